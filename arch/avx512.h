@@ -1,0 +1,42 @@
+/* The vector layer, sixteen lanes: AVX-512 F, VL, DQ, BW. scalar.h says what each operation means. */
+#ifndef FACET_ARCH_AVX512_H
+#define FACET_ARCH_AVX512_H
+
+#include <immintrin.h>
+#include <stdint.h>
+
+#define OP static inline __attribute__((always_inline, unused))
+
+typedef __m512 vf;
+typedef float vf_memory __attribute__((vector_size(64), aligned(4), may_alias));
+typedef struct { __mmask16 m; } vm;
+
+#define VF_LANES 16
+#define VF_INTERLEAVE 2
+
+OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
+OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
+OP vf vf_splat(float a) { return _mm512_set1_ps(a); }
+
+OP vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }
+OP vf vf_min(vf a, vf b) { return _mm512_min_ps(a, b); }
+OP vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
+OP vf vf_abs(vf a) { return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a); }
+OP vf vf_flip(vf a, vf s) { return _mm512_xor_ps(a, _mm512_and_ps(s, _mm512_set1_ps(-0.0f))); }
+
+#if FACET_STRICT
+OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
+OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
+#else
+OP vf vf_mad(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
+OP vf vf_nmad(vf a, vf b, vf c) { return _mm512_fnmadd_ps(a, b, c); }
+#endif
+
+OP vm vf_lt(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) }; }
+OP vm vf_eq(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ) }; }
+OP vm vm_and(vm a, vm b) { return (vm){ (__mmask16)(a.m & b.m) }; }
+OP vf vf_select(vm m, vf a, vf b) { return _mm512_mask_blend_ps(m.m, b, a); }
+OP vf vf_where(vm m, vf a) { return _mm512_maskz_mov_ps(m.m, a); }
+OP uint32_t vm_bits(vm m) { return m.m; }
+
+#endif

@@ -1,0 +1,51 @@
+/* The vector layer, four lanes: NEON as aarch64 has it. scalar.h says what each operation means. */
+#ifndef FACET_ARCH_NEON_H
+#define FACET_ARCH_NEON_H
+
+#include <arm_neon.h>
+#include <stdint.h>
+
+#define OP static inline __attribute__((always_inline, unused))
+
+typedef float32x4_t vf;
+typedef float vf_memory __attribute__((vector_size(16), aligned(4), may_alias));
+typedef struct { uint32x4_t m; } vm;
+
+#define VF_LANES 4
+#define VF_INTERLEAVE 1
+
+OP vf vf_load(const float *p) { return (vf)*(const vf_memory *)p; }
+OP void vf_store(float *p, vf a) { *(vf_memory *)p = (vf_memory)a; }
+OP vf vf_splat(float a) { return vdupq_n_f32(a); }
+
+/* vminq and vmaxq treat NaN and -0 otherwise than a < b ? a : b does. */
+OP vf vf_sqrt(vf a) { return vsqrtq_f32(a); }
+OP vf vf_min(vf a, vf b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
+OP vf vf_max(vf a, vf b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
+OP vf vf_abs(vf a) { return vabsq_f32(a); }
+OP vf vf_flip(vf a, vf s)
+{
+    uint32x4_t sign = vandq_u32(vreinterpretq_u32_f32(s), vdupq_n_u32(0x80000000u));
+    return vreinterpretq_f32_u32(veorq_u32(vreinterpretq_u32_f32(a), sign));
+}
+
+#if FACET_STRICT
+OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
+OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
+#else
+OP vf vf_mad(vf a, vf b, vf c) { return vfmaq_f32(c, a, b); }
+OP vf vf_nmad(vf a, vf b, vf c) { return vfmsq_f32(c, a, b); }
+#endif
+
+OP vm vf_lt(vf a, vf b) { return (vm){ vcltq_f32(a, b) }; }
+OP vm vf_eq(vf a, vf b) { return (vm){ vceqq_f32(a, b) }; }
+OP vm vm_and(vm a, vm b) { return (vm){ vandq_u32(a.m, b.m) }; }
+OP vf vf_select(vm m, vf a, vf b) { return vbslq_f32(m.m, a, b); }
+OP vf vf_where(vm m, vf a) { return vreinterpretq_f32_u32(vandq_u32(m.m, vreinterpretq_u32_f32(a))); }
+OP uint32_t vm_bits(vm m)
+{
+    static const uint32_t bit[4] = { 1, 2, 4, 8 };
+    return vaddvq_u32(vandq_u32(m.m, vld1q_u32(bit)));
+}
+
+#endif

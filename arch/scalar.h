@@ -1,0 +1,51 @@
+/* The vector layer, one lane: plain C, and the meaning of every operation of every other header here.
+ *
+ * vf: VF_LANES floats, with native + - * / alone (each rounds to nearest, lane by lane). vm: a mask, opaque.
+ * Comparisons are false where an operand is NaN. FACET_STRICT 1: vf_mad and vf_nmad round twice, as everywhere;
+ * 0: once where the ISA fuses. VF_INTERLEAVE: vectors that a kernel takes side by side. */
+#ifndef FACET_ARCH_SCALAR_H
+#define FACET_ARCH_SCALAR_H
+
+#include <stdint.h>
+
+#define OP static inline __attribute__((always_inline, unused))
+
+typedef float vf;
+typedef struct { int m; } vm;
+
+#define VF_LANES 1
+#define VF_INTERLEAVE 1
+
+OP vf vf_load(const float *p) { return *p; }
+OP void vf_store(float *p, vf a) { *p = a; }
+OP vf vf_splat(float a) { return a; }
+
+OP vf vf_sqrt(vf a) { return __builtin_sqrtf(a); }
+OP vf vf_min(vf a, vf b) { return a < b ? a : b; }
+OP vf vf_max(vf a, vf b) { return a > b ? a : b; }
+OP vf vf_abs(vf a) { return __builtin_fabsf(a); }
+
+/* a with its sign turned where s has one. */
+OP vf vf_flip(vf a, vf s) { return __builtin_signbit(s) ? -a : a; }
+
+/* a b + c and c - a b. */
+#if !FACET_STRICT && defined(__FP_FAST_FMAF)
+OP vf vf_mad(vf a, vf b, vf c) { return __builtin_fmaf(a, b, c); }
+OP vf vf_nmad(vf a, vf b, vf c) { return __builtin_fmaf(-a, b, c); }
+#else
+OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
+OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
+#endif
+
+OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
+OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }
+OP vm vm_and(vm a, vm b) { return (vm){ a.m & b.m }; }
+
+/* m ? a : b, and m ? a : +0. */
+OP vf vf_select(vm m, vf a, vf b) { return m.m ? a : b; }
+OP vf vf_where(vm m, vf a) { return m.m ? a : 0.0f; }
+
+/* Bit k is lane k's. */
+OP uint32_t vm_bits(vm m) { return (uint32_t)m.m; }
+
+#endif

@@ -1,0 +1,41 @@
+/* The vector layer, four lanes: SSE2. scalar.h says what each operation means. */
+#ifndef FACET_ARCH_SSE2_H
+#define FACET_ARCH_SSE2_H
+
+#include <emmintrin.h>
+#include <stdint.h>
+
+#define OP static inline __attribute__((always_inline, unused))
+
+typedef __m128 vf;
+typedef float vf_memory __attribute__((vector_size(16), aligned(4), may_alias));
+typedef struct { vf m; } vm;
+
+#define VF_LANES 4
+#define VF_INTERLEAVE 1
+
+OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
+OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
+OP vf vf_splat(float a) { return _mm_set1_ps(a); }
+
+OP vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
+OP vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
+OP vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
+OP vf vf_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
+OP vf vf_flip(vf a, vf s) { return _mm_xor_ps(a, _mm_and_ps(s, _mm_set1_ps(-0.0f))); }
+
+OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
+OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
+
+OP vm vf_lt(vf a, vf b) { return (vm){ _mm_cmplt_ps(a, b) }; }
+OP vm vf_eq(vf a, vf b) { return (vm){ _mm_cmpeq_ps(a, b) }; }
+OP vm vm_and(vm a, vm b) { return (vm){ _mm_and_ps(a.m, b.m) }; }
+#ifdef __SSE4_1__
+OP vf vf_select(vm m, vf a, vf b) { return _mm_blendv_ps(b, a, m.m); }
+#else
+OP vf vf_select(vm m, vf a, vf b) { return _mm_or_ps(_mm_and_ps(m.m, a), _mm_andnot_ps(m.m, b)); }
+#endif
+OP vf vf_where(vm m, vf a) { return _mm_and_ps(m.m, a); }
+OP uint32_t vm_bits(vm m) { return (uint32_t)_mm_movemask_ps(m.m); }
+
+#endif

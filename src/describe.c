@@ -1,0 +1,145 @@
+/* Plans and errors in words. Nothing here calls libc: numbers are formatted by hand. */
+#include "internal.h"
+
+/* Writes as snprintf does: counts everything, stores what fits. */
+typedef struct { char *text; size_t size, length; } writer;
+
+static void put_char(writer *w, char c)
+{
+    if (w->length + 1 < w->size) w->text[w->length] = c;
+    w->length++;
+}
+
+static void put(writer *w, const char *s)
+{
+    while (*s) put_char(w, *s++);
+}
+
+static void put_unsigned(writer *w, unsigned n)
+{
+    if (n >= 10) put_unsigned(w, n / 10);
+    put_char(w, (char)('0' + n % 10));
+}
+
+/* Six significant digits, as %g prints them. x >= 0 and finite. */
+static void put_number(writer *w, float x)
+{
+    double scaled = (double)x;
+    int exponent = 5;
+    if (x == 0.0f) {
+        put_char(w, '0');
+        return;
+    }
+    for (; scaled >= 999999.5; exponent++) scaled /= 10.0;
+    for (; scaled < 99999.95; exponent--) scaled *= 10.0;
+    unsigned digits = (unsigned)(scaled + 0.5), power = 100000;
+
+    const bool scientific = exponent < -4 || exponent > 5;
+    const int point = scientific ? 0 : exponent;         /* digits before the decimal point, less one */
+    if (point < 0) put(w, "0.");
+    for (int zeros = point + 1; zeros < 0; zeros++) put_char(w, '0');
+    for (int place = 0; power && (digits || place <= point); place++, power /= 10) {
+        if (place == point + 1 && point >= 0) put_char(w, '.');
+        put_char(w, (char)('0' + digits / power));
+        digits %= power;
+    }
+    if (scientific) {
+        put(w, exponent < 0 ? "e-" : "e+");
+        put_unsigned(w, (unsigned)(exponent < 0 ? -exponent : exponent));
+    }
+}
+
+static void put_numbers(writer *w, const char *name, const float *a, int count)
+{
+    put(w, name);
+    for (int c = 0; c < count; c++) {
+        put_char(w, ' ');
+        put_number(w, a[c]);
+    }
+}
+
+/* A parameter: its numbers, or where they come from. */
+static void put_parameter(writer *w, const plan_fields *p, uint32_t stream, const char *name, const float *a, int count)
+{
+    if (p->promised & stream) {
+        put(w, name);
+        put(w, " per sample");
+    } else {
+        put_numbers(w, name, a, count);
+    }
+}
+
+static size_t finish(writer *w)
+{
+    if (w->size) w->text[w->length < w->size ? w->length : w->size - 1] = 0;
+    return w->length;
+}
+
+static void describe_diffuse(writer *w, const plan_fields *p)
+{
+    put(w, "diffuse: ");
+    put(w, facet_word(FACET_KIND_DIFFUSE, p->diffuse));
+    if (p->needed & FACET_STREAM_ALBEDO) put_parameter(w, p, FACET_STREAM_ALBEDO, ", albedo", p->albedo, 3);
+    if (p->needed & FACET_STREAM_SIGMA) {
+        put_parameter(w, p, FACET_STREAM_SIGMA, ", sigma", &p->sigma, 1);
+        if (p->promised & FACET_STREAM_SIGMA) put(w, ", A and B per sample");
+        else put_numbers(w, ", A and B", p->terms, 2);
+    }
+    put(w, "\n");
+}
+
+static void describe_specular(writer *w, const plan_fields *p)
+{
+    put(w, "specular: ");
+    put(w, facet_word(FACET_KIND_DISTRIBUTION, p->distribution));
+    if (p->distribution) {
+        put_parameter(w, p, FACET_STREAM_ALPHA, ", alpha", &p->alpha, 1);
+        if (p->clamped_alpha) put(w, " (clamped)");
+        put(w, ", masking ");
+        put(w, facet_word(FACET_KIND_MASKING, p->masking));
+        put(w, ", Fresnel ");
+        put(w, facet_word(FACET_KIND_FRESNEL, p->fresnel));
+        if (p->needed & FACET_STREAM_F0) {
+            put_parameter(w, p, FACET_STREAM_F0, ", f0", p->f0, 3);
+            if (p->derived_f0) put(w, " (from eta and k)");
+            if (p->fresnel == FACET_FRESNEL_SCHLICK) put_numbers(w, ", f90", &p->f90, 1);
+        }
+    }
+    put(w, "\n");
+}
+
+size_t facet_plan_describe(const facet_plan *opaque, char *text, size_t size)
+{
+    const plan_fields *p = (const plan_fields *)opaque;
+    writer w = { text, size, 0 };
+    if (!p || !plan_valid(p)) return 0;
+
+    put(&w, "kernel: f32 ");
+    put(&w, facet_word(FACET_KIND_ARCH, p->arch));
+    put(&w, p->tier == FACET_TIER_STRICT ? " strict: the same bytes on every architecture\n" : " fast\n");
+    describe_diffuse(&w, p);
+    describe_specular(&w, p);
+    if (p->coupled) put(&w, "coupled: diffuse times 1 - F\n");
+    if (p->emission[0] + p->emission[1] + p->emission[2] > 0.0f) {
+        put_numbers(&w, "emission:", p->emission, 3);
+        put(&w, "\n");
+    }
+    return finish(&w);
+}
+
+size_t facet_error_describe(const facet_error *error, char *text, size_t size)
+{
+    writer w = { text, size, 0 };
+    if (error->field) {
+        put(&w, error->field);
+        if (error->index >= 0) {
+            put_char(&w, '[');
+            put_unsigned(&w, (unsigned)error->index);
+            put_char(&w, ']');
+        }
+        put(&w, ": ");
+    }
+    const char *words = facet_word(FACET_KIND_STATUS, (int)error->code);
+    put(&w, words ? words : "unknown status");
+    return finish(&w);
+}
