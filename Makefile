@@ -2,8 +2,9 @@
 
 BUILD   ?= build
 PREFIX  ?= /usr/local
-CFLAGS  ?= -O2
+CFLAGS  ?= -O3
 AR      ?= ar
+MAKEFLAGS += --no-builtin-rules
 RUN     ?=
 
 VERSION := $(shell sed -n 's/.*FACET_VERSION_[MP][A-Z]* //p' src/facet.h | paste -sd.)
@@ -90,7 +91,7 @@ $(BUILD)/tests/%.o: tests/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(say)$(CC) $(PROGRAM) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
 
-DEMO := demo mesh teapot raster image
+DEMO := demo demo_options shading_rate console mesh obj teapot raster image
 
 $(BUILD)/facet-demo: $(DEMO:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
@@ -98,10 +99,36 @@ $(BUILD)/facet-demo: $(DEMO:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
 demo: $(BUILD)/facet-demo ## shades a teapot into build/teapot.png and times every architecture
 	$(RUN) $(BUILD)/facet-demo -o $(BUILD)/teapot.png
 
+# The baselines, compiled as a user would compile them, by each compiler that is here.
+NATIVE   := -O3 -ffast-math -march=native
+CLANG    ?= $(firstword $(foreach c,clang clang-19 clang-14,$(shell command -v $c)))
+GCC      ?= $(shell command -v gcc)
+COMPILER.clang := $(CLANG)
+COMPILER.gcc   := $(GCC)
+BASELINES := $(if $(CLANG),clang_256 clang_512) $(if $(GCC),gcc_256 gcc_512)
+
+$(BUILD)/bench/tile_%.o: bench/autovectorized.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(say)$(COMPILER.$(call part,1)) -std=gnu11 $(WARN) $(NATIVE) -mprefer-vector-width=$(call part,2) -DTILE_SHADER=tile_$* -c $< -o $@
+
+$(BUILD)/bench/textbook.o: override CFLAGS := -O2
+$(BUILD)/bench/bench.o: PROGRAM += $(if $(CLANG),-DBASELINE_CLANG) $(if $(GCC),-DBASELINE_GCC)
+
+$(BUILD)/facet-bench: $(BUILD)/bench/bench.o $(BUILD)/bench/textbook.o $(BASELINES:%=$(BUILD)/bench/tile_%.o) $(BUILD)/libfacet.a
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+bench: $(BUILD)/facet-bench ## times every kernel and the baselines, interleaved
+	$(RUN) $(BUILD)/facet-bench
+
 # ---- Tests -----------------------------------------------------------------------------------------------------------
 
-SUITES := harness cases reference samples ops api encode accuracy stability physics agreement golden environment
+# facet-check is every file of tests/ but other programs' and ops_arch.c, which is compiled for each kernel.
+SUITES := $(filter-out consumer exr exr_variants filtered ops_arch readme_tables relight, \
+    $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
 OPS    := $(foreach arch,$(ARCHES),$(TIERS:%=ops_$(arch)_%))
+
+# An emulator seldom finds the shared libraries of the other machine.
+$(BUILD)/facet-check $(BUILD)/facet-demo $(BUILD)/readme-tables: private LDFLAGS += $(if $(RUN),-static)
 
 # ops_ARCH_TIER.o: the vector layer's operations as functions.
 $(BUILD)/tests/ops_%.o: tests/ops_arch.c $(BUILD)/flags
@@ -111,12 +138,68 @@ $(BUILD)/tests/ops_%.o: tests/ops_arch.c $(BUILD)/flags
 $(BUILD)/facet-check: $(SUITES:%=$(BUILD)/tests/%.o) $(OPS:%=$(BUILD)/tests/%.o) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
-OPENEXR := $(shell pkg-config --libs OpenEXR 2>/dev/null)
-
-$(BUILD)/tests/relight.o $(BUILD)/tests/exr.o: PROGRAM += $(shell pkg-config --cflags OpenEXR 2>/dev/null)
+# Asked for when it is needed, as `make deps` may have come first.
+$(BUILD)/tests/relight.o $(BUILD)/tests/exr.o: PROGRAM = $(COMMON) -Isrc $(shell pkg-config --cflags OpenEXR)
 
 $(BUILD)/relight: $(BUILD)/tests/relight.o $(BUILD)/tests/exr.o $(BUILD)/libfacet.a
-	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(OPENEXR) -lm
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(shell pkg-config --libs OpenEXR) -lm
+
+check: ## every test that this machine can run; `make deps check` leaves none out
+	@MAKE='$(MAKE_COMMAND)' CC='$(CC)' CFLAGS='$(CFLAGS)' CPPFLAGS='$(CPPFLAGS)' LDFLAGS='$(LDFLAGS)' RUN='$(RUN)' \
+	    sh tests/run.sh '$(BUILD)'
+
+# README's tables between <!-- NAME --> and <!-- /NAME -->.
+README := README.md
+
+$(BUILD)/readme-tables: $(BUILD)/tests/readme_tables.o
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
+
+readme: $(BUILD)/readme-tables ## writes README.md's tables anew from src/*.def
+	@$(RUN) $< '$(README)' $(foreach f,$(filter FLAGS.%,$(.VARIABLES)),'$(f:FLAGS.%=%)=$($f)') > $(BUILD)/README.md
+	@cmp -s $(BUILD)/README.md '$(README)' || cp $(BUILD)/README.md '$(README)'
+
+# ---- What the tests need ---------------------------------------------------------------------------------------------
+
+DEBIAN := binutils gcc gcc-12 gcc-11 g++ clang-14 clang-19 libc6-dev pkgconf libopenexr-dev gzip qemu-user \
+    gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross \
+    gcc-s390x-linux-gnu libc6-dev-s390x-cross gcc-riscv64-linux-gnu libc6-dev-riscv64-cross
+
+# What it installs decides how the rest is built: with it among the goals they run one after the other, in their order.
+ifneq ($(filter deps,$(MAKECMDGOALS)),)
+.NOTPARALLEL:
+endif
+
+deps: ## installs the Debian packages that `make check` can use
+	@command -v apt-get > /dev/null || { echo 'make deps: no apt-get here; the packages are: $(DEBIAN)' >&2; exit 1; }
+	@missing=; for package in $(DEBIAN); do \
+	    dpkg-query -W -f '$${Status}' $$package 2> /dev/null | grep -q ' installed' || missing="$$missing $$package"; \
+	done; \
+	[ -z "$$missing" ] && exit; \
+	as_root=$$([ "$$(id -u)" = 0 ] || echo sudo); echo "installing$$missing"; \
+	$$as_root apt-get -qq update && \
+	$$as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq install -y --no-install-recommends $$missing > /dev/null
+
+# ---- Install ---------------------------------------------------------------------------------------------------------
+
+TO    = $(DESTDIR)$(PREFIX)
+FILES = include/facet.h lib/libfacet.a lib/libfacet.so lib/$(SONAME) lib/libfacet.so.$(VERSION) lib/pkgconfig/facet.pc
+
+install: all ## into DESTDIR and PREFIX
+	install -d '$(TO)/include' '$(TO)/lib/pkgconfig'
+	install -m 644 src/facet.h '$(TO)/include'
+	install -m 644 $(BUILD)/libfacet.a '$(TO)/lib'
+	install -m 755 $(BUILD)/$(SONAME) '$(TO)/lib/libfacet.so.$(VERSION)'
+	ln -sf libfacet.so.$(VERSION) '$(TO)/lib/$(SONAME)'
+	ln -sf $(SONAME) '$(TO)/lib/libfacet.so'
+	sed 's|^prefix=.*|prefix=$(PREFIX)|' $(BUILD)/facet.pc > '$(TO)/lib/pkgconfig/facet.pc'
+
+uninstall: ## removes what install put there
+	rm -f $(FILES:%='$(TO)/%')
+
+clean: ## removes what was built
+	rm -rf '$(BUILD)'
+
+.PHONY: readme
 
 help: ## lists the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 12

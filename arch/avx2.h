@@ -32,6 +32,17 @@ OP vf vf_mad(vf a, vf b, vf c) { return _mm256_fmadd_ps(a, b, c); }
 OP vf vf_nmad(vf a, vf b, vf c) { return _mm256_fnmadd_ps(a, b, c); }
 #endif
 
+OP vf vf_bits_max(vf a, vf b)
+{
+    return _mm256_castsi256_ps(_mm256_max_epu32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
+}
+OP vf vf_bits_minus(vf a, vf b)
+{
+    return _mm256_castsi256_ps(_mm256_sub_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
+}
+OP vf vf_or(vf a, vf b) { return _mm256_or_ps(a, b); }
+OP uint32_t vf_signs(vf a) { return (uint32_t)_mm256_movemask_ps(a); }
+
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm256_cmp_ps(a, b, _CMP_LT_OQ) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm256_cmp_ps(a, b, _CMP_EQ_OQ) }; }
 OP vm vm_and(vm a, vm b) { return (vm){ _mm256_and_ps(a.m, b.m) }; }

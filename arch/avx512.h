@@ -12,7 +12,7 @@ typedef float vf_memory __attribute__((vector_size(64), aligned(4), may_alias));
 typedef struct { __mmask16 m; } vm;
 
 #define VF_LANES 16
-#define VF_INTERLEAVE 2
+#define VF_INTERLEAVE 1
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
@@ -31,6 +31,17 @@ OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
 OP vf vf_mad(vf a, vf b, vf c) { return _mm512_fmadd_ps(a, b, c); }
 OP vf vf_nmad(vf a, vf b, vf c) { return _mm512_fnmadd_ps(a, b, c); }
 #endif
+
+OP vf vf_bits_max(vf a, vf b)
+{
+    return _mm512_castsi512_ps(_mm512_max_epu32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
+}
+OP vf vf_bits_minus(vf a, vf b)
+{
+    return _mm512_castsi512_ps(_mm512_sub_epi32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
+}
+OP vf vf_or(vf a, vf b) { return _mm512_or_ps(a, b); }
+OP uint32_t vf_signs(vf a) { return _mm512_movepi32_mask(_mm512_castps_si512(a)); }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ) }; }

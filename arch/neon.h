@@ -37,6 +37,24 @@ OP vf vf_mad(vf a, vf b, vf c) { return vfmaq_f32(c, a, b); }
 OP vf vf_nmad(vf a, vf b, vf c) { return vfmsq_f32(c, a, b); }
 #endif
 
+OP vf vf_bits_max(vf a, vf b)
+{
+    return vreinterpretq_f32_u32(vmaxq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
+}
+OP vf vf_bits_minus(vf a, vf b)
+{
+    return vreinterpretq_f32_u32(vsubq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
+}
+OP vf vf_or(vf a, vf b)
+{
+    return vreinterpretq_f32_u32(vorrq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
+}
+OP uint32_t vf_signs(vf a)
+{
+    static const int32_t place[4] = { 0, 1, 2, 3 };
+    return vaddvq_u32(vshlq_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 31), vld1q_s32(place)));
+}
+
 OP vm vf_lt(vf a, vf b) { return (vm){ vcltq_f32(a, b) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ vceqq_f32(a, b) }; }
 OP vm vm_and(vm a, vm b) { return (vm){ vandq_u32(a.m, b.m) }; }

@@ -37,6 +37,16 @@ OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
 OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
 #endif
 
+/* On the bits: the one of a and b whose bits, as an unsigned number, are larger (negatives, infinities and NaN beat all);
+ * the bits of a less those of b; the bits of both. vf_signs: bit k is the sign of lane k. */
+typedef union { float f; uint32_t u; } vf_bits;
+OP uint32_t vf_bits_of(vf a) { return ((vf_bits){ .f = a }).u; }
+OP vf vf_from_bits(uint32_t u) { return ((vf_bits){ .u = u }).f; }
+OP vf vf_bits_max(vf a, vf b) { return vf_bits_of(a) > vf_bits_of(b) ? a : b; }
+OP vf vf_bits_minus(vf a, vf b) { return vf_from_bits(vf_bits_of(a) - vf_bits_of(b)); }
+OP vf vf_or(vf a, vf b) { return vf_from_bits(vf_bits_of(a) | vf_bits_of(b)); }
+OP uint32_t vf_signs(vf a) { return vf_bits_of(a) >> 31; }
+
 OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }
 OP vm vm_and(vm a, vm b) { return (vm){ a.m & b.m }; }

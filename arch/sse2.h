@@ -27,6 +27,20 @@ OP vf vf_flip(vf a, vf s) { return _mm_xor_ps(a, _mm_and_ps(s, _mm_set1_ps(-0.0f
 OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
 OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
 
+OP vf vf_bits_max(vf a, vf b)
+{
+#ifdef __SSE4_1__
+    return _mm_castsi128_ps(_mm_max_epu32(_mm_castps_si128(a), _mm_castps_si128(b)));
+#else
+    const __m128i top = _mm_set1_epi32(INT32_MIN);      /* turned, unsigned compares as signed */
+    __m128i above = _mm_cmpgt_epi32(_mm_xor_si128(_mm_castps_si128(a), top), _mm_xor_si128(_mm_castps_si128(b), top));
+    return _mm_or_ps(_mm_and_ps(_mm_castsi128_ps(above), a), _mm_andnot_ps(_mm_castsi128_ps(above), b));
+#endif
+}
+OP vf vf_bits_minus(vf a, vf b) { return _mm_castsi128_ps(_mm_sub_epi32(_mm_castps_si128(a), _mm_castps_si128(b))); }
+OP vf vf_or(vf a, vf b) { return _mm_or_ps(a, b); }
+OP uint32_t vf_signs(vf a) { return (uint32_t)_mm_movemask_ps(a); }
+
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm_cmplt_ps(a, b) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm_cmpeq_ps(a, b) }; }
 OP vm vm_and(vm a, vm b) { return (vm){ _mm_and_ps(a.m, b.m) }; }

@@ -1,6 +1,8 @@
 /* Plans and errors in words. Nothing here calls libc: numbers are formatted by hand. */
 #include "internal.h"
 
+#include "../arch/environment.h"
+
 /* Writes as snprintf does: counts everything, stores what fits. */
 typedef struct { char *text; size_t size, length; } writer;
 
@@ -21,10 +23,15 @@ static void put_unsigned(writer *w, unsigned n)
     put_char(w, (char)('0' + n % 10));
 }
 
-/* Six significant digits, as %g prints them. x >= 0 and finite. */
+/* Six significant digits, as %g prints them. */
 static void put_number(writer *w, float x)
 {
-    double scaled = (double)x;
+    if (!finite(x)) {
+        put(w, "not finite");
+        return;
+    }
+    if (x < 0.0f) put_char(w, '-');
+    double scaled = x < 0.0f ? -(double)x : (double)x;
     int exponent = 5;
     if (x == 0.0f) {
         put_char(w, '0');
@@ -83,7 +90,7 @@ static void describe_diffuse(writer *w, const plan_fields *p)
     if (p->needed & FACET_STREAM_SIGMA) {
         put_parameter(w, p, FACET_STREAM_SIGMA, ", sigma", &p->sigma, 1);
         if (p->promised & FACET_STREAM_SIGMA) put(w, ", A and B per sample");
-        else put_numbers(w, ", A and B", p->terms, 2);
+        else put_numbers(w, ", A/pi and B/pi", p->terms, 2);
     }
     put(w, "\n");
 }
@@ -108,12 +115,10 @@ static void describe_specular(writer *w, const plan_fields *p)
     put(w, "\n");
 }
 
-size_t facet_plan_describe(const facet_plan *opaque, char *text, size_t size)
+/* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
+static __attribute__((noinline)) size_t describe(const plan_fields *p, char *text, size_t size)
 {
-    const plan_fields *p = (const plan_fields *)opaque;
     writer w = { text, size, 0 };
-    if (!p || !plan_valid(p)) return 0;
-
     put(&w, "kernel: f32 ");
     put(&w, facet_word(FACET_KIND_ARCH, p->arch));
     put(&w, p->tier == FACET_TIER_STRICT ? " strict: the same bytes on every architecture\n" : " fast\n");
@@ -125,6 +130,16 @@ size_t facet_plan_describe(const facet_plan *opaque, char *text, size_t size)
         put(&w, "\n");
     }
     return finish(&w);
+}
+
+size_t facet_plan_describe(const facet_plan *plan, char *text, size_t size)
+{
+    const plan_fields *p = (const plan_fields *)plan;
+    if (!p || !plan_valid(p)) return 0;
+    environment callers = environment_enter();
+    size_t length = describe(p, text, size);
+    environment_leave(callers);
+    return length;
 }
 
 size_t facet_error_describe(const facet_error *error, char *text, size_t size)

@@ -59,8 +59,8 @@ static uint8_t opacity_byte(const facet_image *image, size_t i)
 {
     switch (image->opacity_from) {
     case FACET_OPACITY_STREAM: {
-        float a = image->opacity[i];
-        return !(a > 0.0f) ? 0 : a >= 1.0f ? 255 : (uint8_t)(a * 255.0f + 0.5f);
+        const float a = image->opacity[i];
+        return !(a > 0.0f) ? 0 : a >= 1.0f ? 255 : (uint8_t)((double)a * 255.0 + 0.5);      /* exact but for the cast */
     }
     case FACET_OPACITY_COVERAGE:
         return image->coverage[i >> 3] >> (i & 7) & 1 ? 255 : 0;

@@ -248,7 +248,7 @@ typedef struct facet_batch {
  * Refuses malformed arguments alone, before anything is written; data never fails. A sample's bytes depend on nothing
  * but its own values: not on its place, the count, the alignment or its neighbours. Results for special samples, where
  * the first row that applies holds:
- *   NaN or infinity in a value that is read, or |n|2 = 0   0, and counted in `invalid`
+ *   NaN or infinity in a value that is read, or n = 0      0, and counted in `invalid`
  *   nl <= 0 or nv <= 0                                     that light adds exactly 0
  *   v + l = 0                                              specular 0
  *   a result that would overflow                           FLT_MAX

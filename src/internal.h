@@ -10,8 +10,8 @@
 #error "facet needs float arithmetic in float: on i386, -msse2 -mfpmath=sse; elsewhere, -std=gnu11"
 #endif
 
-#define INV_PI     0x1.45f306p-2f
-#define FACET_PI_2 0x1.921fb6p0f     /* the float nearest to pi/2: above it by 4.4e-8 */
+#define INV_PI     0.318309886f
+#define FACET_PI_2 1.57079633f       /* the float nearest to pi/2: above it by 4.4e-8 */
 
 /* FACET_HAS(name): 1 for a row of models.def that this build holds. FACET_BUILT(x): 1 where x is defined as 1. */
 #define FACET_BUILT_COMMA_1 0,
@@ -28,6 +28,33 @@
 /* Properties of a model (models.def). */
 enum { VIEW = 1, TERMS = 2, F0 = 4, RECIPROCAL = 8, CONSERVES = 16 };
 
+/* The rows of models.def by name. */
+enum {
+#define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                   \
+    DIFFUSE_##name = FACET_DIFFUSE_##id, DIFFUSE_PROPERTIES_##name = properties,
+#define FACET_DISTRIBUTION(id, name, ...) DISTRIBUTION_##name = FACET_DISTRIBUTION_##id,
+#define FACET_MASKING(id, name, ...) MASKING_##name = FACET_MASKING_##id,
+#define FACET_FRESNEL(id, name, word, properties, title)                                                              \
+    FRESNEL_##name = FACET_FRESNEL_##id, FRESNEL_PROPERTIES_##name = properties,
+#include "models.def"
+};
+
+/* How many rows there are. */
+enum {
+#define FACET_DIFFUSE(...) + 1
+    DIFFUSE_ROWS = 0
+#include "models.def"
+#define FACET_DISTRIBUTION(...) + 1
+    , DISTRIBUTION_ROWS = 0
+#include "models.def"
+#define FACET_MASKING(...) + 1
+    , MASKING_ROWS = 0
+#include "models.def"
+#define FACET_FRESNEL(...) + 1
+    , FRESNEL_ROWS = 0
+#include "models.def"
+};
+
 /* A masking under a distribution, by its row in models.def. */
 enum visibility {
 #define FACET_VISIBILITY(masking, distribution, properties) VISIBILITY_##masking##_##distribution,
@@ -37,11 +64,17 @@ enum visibility {
 
 enum { ARCH_COUNT = FACET_ARCH_NEON + 1, TIER_COUNT = FACET_TIER_STRICT + 1 };
 
-/* The components of all streams, in the order of streams.def: NORMAL is the place of the normal's x. */
+/* The streams of streams.def, and their components: COMPONENT_NORMAL is the place of the normal's x. */
 enum {
-#define FACET_STREAM(id, field, components, owner) STREAM_##id, STREAM_##id##_LAST = STREAM_##id + components - 1,
+#define FACET_STREAM(id, ...) STREAM_##id,
 #include "streams.def"
     STREAM_COUNT
+};
+enum {
+#define FACET_STREAM(id, field, components, ...)                                                                      \
+    COMPONENT_##id, COMPONENT_##id##_LAST = COMPONENT_##id + components - 1,
+#include "streams.def"
+    COMPONENT_COUNT
 };
 
 /* What a facet_plan holds. Every number is as the kernels want it: clamped, derived, ready to be splatted. */
@@ -53,7 +86,7 @@ typedef struct __attribute__((may_alias)) plan_fields {
     uint8_t diffuse_view;                /* the diffuse model depends on v */
     uint8_t unused;
     uint32_t promised, needed;           /* FACET_STREAM_*: of the material's; read by the kernel */
-    float albedo[3], sigma, terms[2];
+    float albedo[3], sigma, sigma_max, terms[2];   /* terms: A and B over pi */
     float alpha;
     float f0[3], f90;
     float emission[3];
@@ -64,12 +97,15 @@ typedef struct __attribute__((may_alias)) plan_fields {
 /* One call of a kernel. */
 typedef struct job {
     const plan_fields *plan;
-    const float *stream[STREAM_COUNT];   /* a component of a stream; not read where the plan does not need it */
-    uint32_t streams, uniform;           /* FACET_STREAM_*: come from the batch; are one value there */
+    const float *component[COMPONENT_COUNT];   /* of a stream, or its one value; NULL: not read */
+    uint32_t streams;                    /* FACET_STREAM_*: come from the batch */
+    uint32_t uniform;                    /* FACET_STREAM_*: have one value */
     size_t count;
     const facet_light *lights;
     size_t light_count;
-    float ambient[3];
+    float ambient[3];                    /* irradiance over pi */
+    bool constant_radiance;              /* ambient or emission is not 0 */
+    bool check_lights;                   /* a light has a stream, or an irradiance below 0 */
     const uint8_t *coverage;
     float *radiance[3];
     uint32_t flags;
@@ -81,10 +117,12 @@ typedef void kernel(const job *);
 /* The kernel of an architecture and tier; NULL where the build lacks it. */
 kernel *facet_kernel(facet_arch arch, facet_tier tier);
 
+/* Whether these bytes can be a plan of this library: what the kernels index and switch by is in range. */
 static inline bool plan_valid(const plan_fields *p)
 {
-    return p->magic == PLAN_MAGIC && p->arch < ARCH_COUNT && p->tier < TIER_COUNT
-        && facet_kernel((facet_arch)p->arch, (facet_tier)p->tier);
+    return p->magic == PLAN_MAGIC && p->arch < ARCH_COUNT && p->tier < TIER_COUNT && p->diffuse < DIFFUSE_ROWS
+        && p->distribution < DISTRIBUTION_ROWS && p->masking < MASKING_ROWS && p->visibility <= VISIBILITY_NONE
+        && p->fresnel < FRESNEL_ROWS && facet_kernel((facet_arch)p->arch, (facet_tier)p->tier);
 }
 
 static inline facet_status refuse(facet_error *error, facet_status code, const char *field, int index)

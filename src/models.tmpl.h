@@ -1,6 +1,7 @@
 /* The models, once for every architecture and tier: what follows is the mathematics of facet.h's enumerators, over the
  * vector layer that was included before (arch/NAME.h). Each function's formula stands above it, as its source prints it,
- * then as it is evaluated. Names are those of facet.h; `f` is always the BRDF times nl. */
+ * then as it is evaluated. Names are those of facet.h; `f` is
+ * always the BRDF times nl. */
 #ifndef FACET_MODELS_TMPL_H
 #define FACET_MODELS_TMPL_H
 
@@ -30,29 +31,25 @@ OP vf3 cross(vf3 a, vf3 b)
 OP vf square(vf a) { return a * a; }
 OP vf pow5(vf a) { vf a2 = a * a; return a2 * a2 * a; }
 
-/* The domain, alike for a plan's numbers and a stream's. */
 OP vf not_negative(vf a) { return vf_max(a, splat(0.0f)); }
-OP vf unit_interval(vf a) { return vf_min(vf_max(a, splat(0.0f)), splat(1.0f)); }
-OP vf alpha_domain(vf a) { return vf_min(vf_max(a, splat(FACET_ALPHA_FLOOR)), splat(1.0f)); }
 OP vf3 not_negative3(vf3 a) { return (vf3){ not_negative(a.x), not_negative(a.y), not_negative(a.z) }; }
-OP vf3 unit_interval3(vf3 a) { return (vf3){ unit_interval(a.x), unit_interval(a.y), unit_interval(a.z) }; }
+OP vf clamp(vf a, float low, float high) { return vf_min(vf_max(a, splat(low)), splat(high)); }
 
-/* What follows from sigma alone: A and B of the Oren-Nayar family. */
+/* What follows from sigma alone: A and B of the Oren-Nayar family, over pi. */
 typedef struct { vf A, B; } terms;
 
-/* What a sample brings, and what follows from it without a light. */
+/* What a sample brings, whatever the light; in its domain. */
 typedef struct {
-    vf nv;                   /* > 0 */
-    vf3 albedo;
     terms terms;
+    vf3 albedo;
     vf alpha, alpha2;
     vf3 f0;
     vf f90;
 } surface;
 
-/* One light at one sample. nl is 0 where the light cannot be seen; w = v + l. */
+/* One light at one sample; w = v + l. */
 typedef struct {
-    vf nl, vl;
+    vf nl, nv, vl;           /* nl: 0 where the light is not seen; nv: > 0 */
     vf hh;                   /* |w|^2 */
     vf nw2, nxw2;            /* (n.w)^2, |n x w|^2: cos^2 and sin^2 of the half vector, times hh */
 } incidence;
@@ -73,16 +70,16 @@ OP vf3 diffuse_lambert(surface s, incidence i) { return scale3(s.albedo, i.nl * 
  * vector, no tangent at grazing; nl s0/max(nl, nv) <= 1. */
 OP vf3 oren_nayar(surface s, incidence i)
 {
-    vf s0 = vf_nmad(i.nl, s.nv, i.vl);
-    vf sin_tan = not_negative(s0) / vf_max(i.nl, s.nv);
-    return scale3(s.albedo, i.nl * INV_PI * vf_mad(s.terms.B, sin_tan, s.terms.A));
+    vf s0 = vf_nmad(i.nl, i.nv, i.vl);
+    vf sin_tan = not_negative(s0) / vf_max(i.nl, i.nv);
+    return scale3(s.albedo, i.nl * vf_mad(s.terms.B, sin_tan, s.terms.A));
 }
 
-/* A = 1 - 0.5 s2/(s2 + fold), B = 0.45 s2/(s2 + 0.09), s = sigma. */
+/* A = 1 - 0.5 s2/(s2 + fold), B = 0.45 s2/(s2 + 0.09), s = sigma; both over pi. */
 OP terms oren_nayar_terms(vf sigma, float fold)
 {
     vf s2 = square(sigma);
-    return (terms){ 1.0f - 0.5f * s2 / (s2 + fold), 0.45f * s2 / (s2 + 0.09f) };
+    return (terms){ INV_PI - (0.5f * INV_PI) * s2 / (s2 + fold), (0.45f * INV_PI) * s2 / (s2 + 0.09f) };
 }
 OP terms terms_oren_nayar(vf sigma) { return oren_nayar_terms(sigma, 0.33f); }
 OP terms terms_oren_nayar_57(vf sigma) { return oren_nayar_terms(sigma, 0.57f); }
@@ -92,14 +89,14 @@ OP terms terms_oren_nayar_57(vf sigma) { return oren_nayar_terms(sigma, 0.57f); 
 /* Fujii: f = albedo (A + B s0/t), A = 1/(pi + (pi/2 - 2/3) r), B = r A, t = max(nl, nv) where s0 > 0, else 1. */
 OP terms terms_fujii(vf r)
 {
-    vf A = 1.0f / (0x1.921fb6p1f + 0x1.cef4c0p-1f * r);   /* pi, pi/2 - 2/3 */
+    vf A = 1.0f / (3.14159265f + 0.904129660f * r);
     return (terms){ A, r * A };
 }
 
 OP vf3 diffuse_fujii(surface s, incidence i)
 {
-    vf s0 = vf_nmad(i.nl, s.nv, i.vl);
-    vf t = vf_select(vf_lt(splat(0.0f), s0), vf_max(i.nl, s.nv), splat(1.0f));
+    vf s0 = vf_nmad(i.nl, i.nv, i.vl);
+    vf t = vf_select(vf_lt(splat(0.0f), s0), vf_max(i.nl, i.nv), splat(1.0f));
     return scale3(s.albedo, i.nl * not_negative(vf_mad(s.terms.B, s0 / t, s.terms.A)));
 }
 
@@ -126,18 +123,16 @@ OP vf ggx_slope(surface s, vf mu)
  * V = 0.5 nl/(nl sqrt(nv^2 (1 - alpha^2) + alpha^2) + nv sqrt(nl^2 (1 - alpha^2) + alpha^2)) <= 1/(2 alpha). */
 OP vf visibility_smith_correlated_ggx(surface s, incidence i)
 {
-    return 0.5f * i.nl / vf_mad(i.nl, ggx_slope(s, s.nv), s.nv * ggx_slope(s, i.nl));
+    return 0.5f * i.nl / vf_mad(i.nl, ggx_slope(s, i.nv), i.nv * ggx_slope(s, i.nl));
 }
 
 /* Walter et al. 2007, eq. 23 and 34: G = G1(nl) G1(nv), G1(mu) = 2/(1 + sqrt(1 + alpha^2 tan^2)). */
 OP vf visibility_smith_ggx(surface s, incidence i)
 {
-    return i.nl / ((i.nl + ggx_slope(s, i.nl)) * (s.nv + ggx_slope(s, s.nv)));
+    return i.nl / ((i.nl + ggx_slope(s, i.nl)) * (i.nv + ggx_slope(s, i.nv)));
 }
 
 /* ---- Fresnel: at vh, the microfacet's own cosine --------------------------------------------------------------- */
-
-OP vf vh_of(incidence i) { return 0.5f * vf_sqrt(i.hh); }
 
 OP vf3 fresnel_one(surface s, incidence i) { (void)s, (void)i; return same3(splat(1.0f)); }
 
@@ -146,8 +141,8 @@ OP vf3 fresnel_constant(surface s, incidence i) { (void)i; return s.f0; }
 /* Schlick 1994: F = f0 + (f90 - f0)(1 - vh)^5. */
 OP vf3 fresnel_schlick(surface s, incidence i)
 {
-    vf c5 = pow5(not_negative(1.0f - vh_of(i)));
-    return (vf3){ vf_mad(s.f90 - s.f0.x, c5, s.f0.x), vf_mad(s.f90 - s.f0.y, c5, s.f0.y), vf_mad(s.f90 - s.f0.z, c5, s.f0.z) };
+    vf c5 = pow5(not_negative(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f)))), a = 1.0f - c5, b = s.f90 * c5;
+    return (vf3){ vf_mad(s.f0.x, a, b), vf_mad(s.f0.y, a, b), vf_mad(s.f0.z, a, b) };
 }
 
 #endif

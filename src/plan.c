@@ -19,13 +19,6 @@ static const int fresnel_properties[] = {
 #include "models.def"
 };
 
-/* The rows of models.def by name. */
-enum {
-#define FACET_DISTRIBUTION(id, name, ...) DISTRIBUTION_##name = FACET_DISTRIBUTION_##id,
-#define FACET_MASKING(id, name, ...) MASKING_##name = FACET_MASKING_##id,
-#include "models.def"
-};
-
 static enum visibility find_visibility(int masking, int distribution)
 {
 #define FACET_VISIBILITY(masking_, distribution_, properties)                                                         \
@@ -92,7 +85,7 @@ static facet_status check_material(const facet_material *m, facet_error *error)
     const uint32_t known = 0
 #define FACET_STREAM_GEOMETRY(id)
 #define FACET_STREAM_MATERIAL(id) | FACET_STREAM_##id
-#define FACET_STREAM(id, field, components, owner) FACET_STREAM_##owner(id)
+#define FACET_STREAM(id, field, components, owner, ...) FACET_STREAM_##owner(id)
 #include "streams.def"
         ;
     return m->streams & ~known ? refuse(error, FACET_ERROR_ENUM, "streams", -1) : FACET_OK;
@@ -130,6 +123,7 @@ static void compile_diffuse(plan_fields *p, const facet_material *m)
     if (!(properties & TERMS)) return;
 
     p->needed |= FACET_STREAM_SIGMA;
+    p->sigma_max = diffuse_rows[m->diffuse.model].sigma_max;
     if (p->promised & FACET_STREAM_SIGMA) return;
     terms t = terms_none(0.0f);
     switch (m->diffuse.model) {
@@ -156,18 +150,18 @@ static void compile_specular(plan_fields *p, const facet_material *m)
     p->coupled = m->coupled;
     p->needed |= FACET_STREAM_ALPHA;
     if (!(p->promised & FACET_STREAM_ALPHA)) {
-        p->alpha = alpha_domain(m->specular.alpha);
+        p->alpha = clamp(m->specular.alpha, FACET_ALPHA_FLOOR, 1.0f);
         p->clamped_alpha = p->alpha != m->specular.alpha;
     }
     if (!(fresnel_properties[m->fresnel.model] & F0)) return;
 
     p->needed |= FACET_STREAM_F0;
-    p->f90 = m->fresnel.f90 == 0.0f ? 1.0f : unit_interval(m->fresnel.f90);
+    p->f90 = m->fresnel.f90 == 0.0f ? 1.0f : clamp(m->fresnel.f90, 0.0f, 1.0f);
     if (p->promised & FACET_STREAM_F0) return;
     const float *f0 = m->fresnel.f0, *eta = m->fresnel.eta, *k = m->fresnel.k;
     const float outside = m->fresnel.eta_outside > 0.0f ? m->fresnel.eta_outside : 1.0f;
     p->derived_f0 = gives_eta(m) && f0[0] == 0.0f && f0[1] == 0.0f && f0[2] == 0.0f;
-    for (int c = 0; c < 3; c++) p->f0[c] = p->derived_f0 ? f0_of(eta[c], k[c], outside) : unit_interval(f0[c]);
+    for (int c = 0; c < 3; c++) p->f0[c] = p->derived_f0 ? f0_of(eta[c], k[c], outside) : clamp(f0[c], 0.0f, 1.0f);
 }
 
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */

@@ -22,9 +22,14 @@ static bool all_given(const float *const *stream, int components)
     return true;
 }
 
-static facet_status check_light(const facet_light *light, int index, facet_error *error)
+/* Raises *special where the light needs more of the kernel than a plain one. */
+static facet_status check_light(const facet_light *light, int index, bool *special, facet_error *error)
 {
     if (light->kind != FACET_LIGHT_DIRECTIONAL) return refuse(error, FACET_ERROR_ENUM, "light.kind", index);
+
+    const float *E = light->irradiance;
+    if (light->direction_of[0] || light->irradiance_of[0] || light->visibility || E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f)
+        *special = true;
 
     facet_status status;
     if (!light->direction_of[0] && !light->direction_of[1] && !light->direction_of[2])
@@ -38,7 +43,7 @@ static facet_status check_light(const facet_light *light, int index, facet_error
     return all_given(light->irradiance_of, 3) ? FACET_OK : refuse(error, FACET_ERROR_NULL, "light.irradiance_of", index);
 }
 
-/* Gathers the streams that the plan reads; names the first that is not there. */
+/* Finds the streams that the plan reads, or the plan's own numbers in their place; names the first that is not there. */
 static facet_status gather_streams(job *j, const facet_batch *b, facet_error *error)
 {
     const plan_fields *p = j->plan;
@@ -46,25 +51,33 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
     const uint32_t required = FACET_STREAM_NORMAL | (view_needed ? FACET_STREAM_VIEW : 0u) | p->promised;
 
     j->streams = FACET_STREAM_NORMAL | (p->promised & p->needed);
-    if (b->view[0] || view_needed) j->streams |= FACET_STREAM_VIEW;
+    if (view_needed || b->view[0] || b->view[1] || b->view[2]) j->streams |= FACET_STREAM_VIEW;
+    j->uniform = b->uniform;
 
-#define FIRST_1(field) (const float *const[]){ b->field }
-#define FIRST_3(field) b->field
-#define FACET_STREAM(id, field, components, owner)                                                                    \
+#define POINTERS_1(owner, field) (const float *const[]){ owner field }
+#define POINTERS_3(owner, field) (const float *const[]){ owner field[0], owner field[1], owner field[2] }
+#define NUMBERS_GEOMETRY(components, field) 0
+#define NUMBERS_MATERIAL(components, field) NUMBERS_##components(field)
+#define NUMBERS_1(field) &p->field
+#define NUMBERS_3(field) p->field
+#define FACET_STREAM(id, field, components, owner, ...) \
     {                                                                                                                \
-        const float *const *stream = FIRST_##components(field);                                                      \
+        const float *const *stream = POINTERS_##components(b->, field), *numbers = NUMBERS_##owner(components, field); \
         if ((required | j->streams) & FACET_STREAM_##id && !all_given(stream, components))                           \
             return refuse(error, FACET_ERROR_NULL, #field, -1);                                                      \
-        for (int c = 0; c < components; c++) j->stream[STREAM_##id + c] = stream[c];                                 \
+        const bool theirs = !numbers || j->streams & FACET_STREAM_##id;                                              \
+        if (!theirs) j->uniform |= FACET_STREAM_##id;                                                                \
+        for (int c = 0; c < components; c++) j->component[COMPONENT_##id + c] = theirs ? stream[c] : numbers + c;          \
     }
 #include "streams.def"
+    if (!(j->streams & FACET_STREAM_VIEW)) j->uniform &= ~(uint32_t)FACET_STREAM_VIEW;
     return FACET_OK;
 }
 
 static facet_status check_batch(job *j, const facet_batch *b, facet_error *error)
 {
     const uint32_t known_flags = FACET_ACCUMULATE | FACET_TWO_SIDED, known_streams = 0
-#define FACET_STREAM(id, field, components, owner) | FACET_STREAM_##id
+#define FACET_STREAM(id, field, components, owner, ...) | FACET_STREAM_##id
 #include "streams.def"
         ;
     if (b->flags & ~known_flags) return refuse(error, FACET_ERROR_ENUM, "flags", -1);
@@ -76,7 +89,8 @@ static facet_status check_batch(job *j, const facet_batch *b, facet_error *error
 
     status = check_vector(b->ambient, "ambient", -1, error);
     if (!status && b->light_count && !b->lights) status = refuse(error, FACET_ERROR_NULL, "lights", -1);
-    for (size_t i = 0; !status && i < b->light_count; i++) status = check_light(&b->lights[i], (int)i, error);
+    j->check_lights = false;
+    for (size_t i = 0; !status && i < b->light_count; i++) status = check_light(&b->lights[i], (int)i, &j->check_lights, error);
     return status;
 }
 
@@ -88,16 +102,17 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, const 
     facet_status status = check_batch(&j, b, error);
     if (status) return status;
 
-    j.uniform = b->uniform;
     j.count = b->count;
     j.lights = b->lights;
     j.light_count = b->light_count;
     j.coverage = b->coverage;
     j.flags = b->flags;
     j.invalid = b->invalid;
+    j.constant_radiance = false;
     for (int c = 0; c < 3; c++) {
         j.ambient[c] = b->ambient[c] > 0.0f ? b->ambient[c] * INV_PI : 0.0f;
         j.radiance[c] = b->radiance[c];
+        if (j.ambient[c] > 0.0f || p->emission[c] > 0.0f) j.constant_radiance = true;
     }
     facet_kernel((facet_arch)p->arch, (facet_tier)p->tier)(&j);
     return FACET_OK;

@@ -8,7 +8,13 @@
 #define GROUP (K * VF_LANES)
 #define EACH(k) _Pragma("GCC unroll 4") for (int k = 0; k < K; k++)
 
-_Static_assert(GROUP <= 32, "coverage of a group is a uint32_t");
+/* Samples in a block: special cases are looked for, and mended, a block at a time. */
+#define BLOCK (VF_LANES > 1 ? 64 : 16)
+
+/* A bit for each of n <= 32 lanes. */
+#define LANES(n) ((uint32_t)((1ull << (n)) - 1))
+
+_Static_assert(GROUP <= 32 && BLOCK % GROUP == 0 && BLOCK % 8 == 0, "coverage of a group is a uint32_t, of a block a uint64_t");
 
 enum {
     SPECULAR_BUILT = 0
@@ -16,48 +22,98 @@ enum {
 #include "models.def"
 };
 
-/* ---- Loads: each also multiplies the values into `is_finite`, which so stays 0 or becomes NaN ---------------------- */
+/* What the switches look at: a plan's and a batch's, or constants in a specialised row. */
+typedef struct {
+    facet_diffuse diffuse;
+    facet_distribution distribution;
+    enum visibility visibility;
+    facet_fresnel fresnel;
+    uint32_t needed;         /* FACET_STREAM_*: of the material's, what is read */
+    bool coupled, view, two_sided;
+    bool plain;              /* a whole block of good samples, one light without streams, and nothing else added */
+} features;
 
-OP void take(vf *is_finite, vf a) { *is_finite = *is_finite * a; }
+/* ---- A group ----------------------------------------------------------------------------------------------------
+ * Streams are read where they are needed, again for each light: a load is cheaper than a register held. */
 
-OP void take3(vf *is_finite, vf3 a)
+typedef struct {
+    const float *const *component;       /* of the block's streams */
+    size_t at;                           /* the group's first sample in the block */
+    vf nv[K];                            /* as it comes, of any sign */
+    terms terms[K];
+    vf is_finite[K];                     /* 0, or NaN where a light's or the destination's value was not finite */
+    vf3 sum[K];                          /* over the lights */
+} group;
+
+#define LOAD(g, id, k)  load(g, COMPONENT_##id, k)
+#define LOAD3(g, id, k) load3(g, COMPONENT_##id, k)
+
+OP vf load(const group *g, int component, int k)
 {
-    take(is_finite, a.x);
-    take(is_finite, a.y);
-    take(is_finite, a.z);
+    return vf_load(g->component[component] + g->at + k * VF_LANES);
 }
 
-/* A group of a stream of the batch, or the stream's one value in every lane. */
-OP void load(const job *j, const float *const *stream, int id, uint32_t bit, size_t at, vf *a, vf *is_finite)
+OP vf3 load3(const group *g, int component, int k)
 {
-    if (j->uniform & bit)
-        EACH(k) a[k] = splat(*stream[id]);
-    else
-        EACH(k) a[k] = vf_load(stream[id] + at + k * VF_LANES);
-    EACH(k) take(&is_finite[k], a[k]);
+    return (vf3){ load(g, component, k), load(g, component + 1, k), load(g, component + 2, k) };
 }
 
-OP void load3(const job *j, const float *const *stream, int id, uint32_t bit, size_t at, vf3 *a, vf *is_finite)
+/* What a model uses of it is loaded where it uses it; the rest is dead code. */
+OP surface surface_at(const group *g, const plan_fields *p, int k)
 {
-    vf x[K], y[K], z[K];
-    load(j, stream, id, bit, at, x, is_finite);
-    load(j, stream, id + 1, bit, at, y, is_finite);
-    load(j, stream, id + 2, bit, at, z, is_finite);
-    EACH(k) a[k] = (vf3){ x[k], y[k], z[k] };
+    surface s;
+    s.terms = g->terms[k];
+    s.albedo = LOAD3(g, ALBEDO, k);
+    s.alpha = LOAD(g, ALPHA, k);
+    s.alpha2 = square(s.alpha);
+    s.f0 = LOAD3(g, F0, k);
+    s.f90 = splat(p->f90);
+    return s;
 }
 
-/* The same of a light's own stream, whose end the padding of a batch's tail does not reach. */
+/* nv and what follows from sigma. */
+OP void prepare(group *g, features x, const job *j)
+{
+    const plan_fields *p = j->plan;
+    EACH(k) {
+        g->is_finite[k] = splat(0.0f);
+        g->sum[k] = ZERO3;
+        g->terms[k] = (terms){ splat(p->terms[0]), splat(p->terms[1]) };
+        g->nv[k] = splat(1.0f);
+    }
+    if (x.view) EACH(k) g->nv[k] = dot(LOAD3(g, NORMAL, k), LOAD3(g, VIEW, k));
+    if (!(j->streams & FACET_STREAM_SIGMA)) return;
+    switch (x.diffuse) {
+#define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                   \
+    case FACET_DIFFUSE_##id:                                                                                         \
+        if (FACET_HAS(name) && ((properties) & TERMS))                                                               \
+            EACH(k) g->terms[k] = terms_##name(LOAD(g, SIGMA, k));                                        \
+        break;
+#include "models.def"
+    }
+}
+
+/* ---- One light ---------------------------------------------------------------------------------------------------- */
+
+/* The end of a light's own stream, with zeros behind it. Rare: out of the way. */
+static __attribute__((noinline, cold)) void pad_light(const float *from, size_t left, float *padded)
+{
+    for (size_t lane = 0; lane < GROUP; lane++) padded[lane] = lane < left ? from[lane] : 0.0f;
+}
+
+/* A group of a light's own stream, whose end the padding of a batch's tail does not reach. */
 OP void load_light(const job *j, const float *stream, size_t i, vf *a, vf *is_finite)
 {
-    size_t left = j->count - i;
-    if (left >= GROUP) {
-        EACH(k) a[k] = vf_load(stream + i + k * VF_LANES);
-    } else {
-        float padded[GROUP];
-        for (size_t lane = 0; lane < GROUP; lane++) padded[lane] = lane < left ? stream[i + lane] : 0.0f;
-        EACH(k) a[k] = vf_load(padded + k * VF_LANES);
+    const float *from = stream + i;
+    float padded[GROUP];
+    if (j->count - i < GROUP) {
+        pad_light(from, j->count - i, padded);
+        from = padded;
     }
-    EACH(k) take(&is_finite[k], a[k]);
+    EACH(k) {
+        a[k] = vf_load(from + k * VF_LANES);
+        is_finite[k] = is_finite[k] + (a[k] - a[k]);
+    }
 }
 
 OP void load_light3(const job *j, const float *const *stream, size_t i, vf3 *a, vf *is_finite)
@@ -69,147 +125,77 @@ OP void load_light3(const job *j, const float *const *stream, size_t i, vf3 *a, 
     EACH(k) a[k] = (vf3){ x[k], y[k], z[k] };
 }
 
-/* ---- A group: what its samples bring ---------------------------------------------------------------------------- */
-
-typedef struct {
-    vf3 n[K], v[K];
-    vf flip[K];                  /* two-sided: nv as it came, whose sign nl takes over; else 1 */
-    vm faces[K];                 /* nv > 0 */
-    surface s[K];
-    vf is_finite[K];             /* 0, or NaN where a value was not finite */
-    vf3 sum[K];                  /* over the lights */
-} group;
-
-OP void load_view(group *g, const job *j, const float *const *stream, size_t at)
+OP void load_direction(group *g, features x, const job *j, const facet_light *light, size_t i, vf3 *l)
 {
-    if (!(j->streams & FACET_STREAM_VIEW)) {
-        EACH(k) {
-            g->v[k] = g->n[k];
-            g->s[k].nv = g->flip[k] = splat(1.0f);
-            g->faces[k] = vf_lt(splat(0.0f), splat(1.0f));
-        }
-        return;
-    }
-    load3(j, stream, STREAM_VIEW, FACET_STREAM_VIEW, at, g->v, g->is_finite);
-    vf nv[K];
-    EACH(k) nv[k] = dot(g->n[k], g->v[k]);
-    if (j->flags & FACET_TWO_SIDED)
-        EACH(k) {
-            g->flip[k] = nv[k];
-            nv[k] = vf_abs(nv[k]);
-        }
-    else
-        EACH(k) g->flip[k] = splat(1.0f);
-    EACH(k) {
-        g->faces[k] = vf_lt(splat(0.0f), nv[k]);
-        g->s[k].nv = vf_max(nv[k], splat(TINY));
-    }
-}
-
-OP void load_diffuse(group *g, const job *j, const float *const *stream, size_t at)
-{
-    const plan_fields *p = j->plan;
-    if (j->streams & FACET_STREAM_ALBEDO) {
-        vf3 albedo[K];
-        load3(j, stream, STREAM_ALBEDO, FACET_STREAM_ALBEDO, at, albedo, g->is_finite);
-        EACH(k) g->s[k].albedo = not_negative3(albedo[k]);
-    } else {
-        EACH(k) g->s[k].albedo = splat3(p->albedo);
-    }
-    EACH(k) g->s[k].terms = (terms){ splat(p->terms[0]), splat(p->terms[1]) };
-    if (!(j->streams & FACET_STREAM_SIGMA)) return;
-
-    vf sigma[K];
-    load(j, stream, STREAM_SIGMA, FACET_STREAM_SIGMA, at, sigma, g->is_finite);
-    switch ((facet_diffuse)p->diffuse) {
-#define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                  \
-    case FACET_DIFFUSE_##id:                                                                                         \
-        if (FACET_HAS(name) && ((properties) & TERMS))                                                               \
-            EACH(k) g->s[k].terms = terms_##name(vf_min(not_negative(sigma[k]), splat(sigma_max)));                  \
-        break;
-#include "models.def"
-    }
-}
-
-OP void load_specular(group *g, const job *j, bool specular, const float *const *stream, size_t at)
-{
-    const plan_fields *p = j->plan;
-    EACH(k) {
-        g->s[k].alpha = g->s[k].alpha2 = g->s[k].f90 = splat(0.0f);
-        g->s[k].f0 = ZERO3;
-    }
-    if (!specular) return;
-    if (j->streams & FACET_STREAM_ALPHA) {
-        vf alpha[K];
-        load(j, stream, STREAM_ALPHA, FACET_STREAM_ALPHA, at, alpha, g->is_finite);
-        EACH(k) g->s[k].alpha = alpha_domain(alpha[k]);
-    } else {
-        EACH(k) g->s[k].alpha = splat(p->alpha);
-    }
-    if (j->streams & FACET_STREAM_F0) {
-        vf3 f0[K];
-        load3(j, stream, STREAM_F0, FACET_STREAM_F0, at, f0, g->is_finite);
-        EACH(k) g->s[k].f0 = unit_interval3(f0[k]);
-    } else {
-        EACH(k) g->s[k].f0 = splat3(p->f0);
-    }
-    EACH(k) {
-        g->s[k].alpha2 = square(g->s[k].alpha);
-        g->s[k].f90 = splat(p->f90);
-    }
-}
-
-/* ---- A group: one light ------------------------------------------------------------------------------------------ */
-
-OP void load_directional(group *g, const job *j, const facet_light *light, size_t i, vf3 *l, vf3 *irradiance)
-{
-    if (light->direction_of[0])
+    if (!x.plain && light->direction_of[0])
         load_light3(j, light->direction_of, i, l, g->is_finite);
     else
         EACH(k) l[k] = splat3(light->direction);
+}
 
-    if (light->irradiance_of[0])
-        load_light3(j, light->irradiance_of, i, irradiance, g->is_finite);
+/* Irradiance times visibility. */
+OP void load_irradiance(group *g, features x, const job *j, const facet_light *light, size_t i, vf3 *E)
+{
+    if (!x.plain && light->irradiance_of[0])
+        load_light3(j, light->irradiance_of, i, E, g->is_finite);
     else
-        EACH(k) irradiance[k] = splat3(light->irradiance);
-    EACH(k) irradiance[k] = not_negative3(irradiance[k]);
+        EACH(k) E[k] = splat3(light->irradiance);
+    if (x.plain) return;
+    if (j->check_lights) EACH(k) E[k] = not_negative3(E[k]);
 
     if (light->visibility) {
-        vf visibility[K];
-        load_light(j, light->visibility, i, visibility, g->is_finite);
-        EACH(k) irradiance[k] = scale3(irradiance[k], unit_interval(visibility[k]));
+        vf seen[K];
+        load_light(j, light->visibility, i, seen, g->is_finite);
+        EACH(k) E[k] = scale3(E[k], clamp(seen[k], 0.0f, 1.0f));
     }
 }
 
-OP void diffuse(const plan_fields *p, const surface *s, const incidence *t, vf3 *f)
+/* nl and nv, where the light and the eye are on the normal's side; nl = 0 elsewhere. */
+OP void face(const group *g, features x, vf *nl, incidence *t)
 {
-    switch ((facet_diffuse)p->diffuse) {
+    vf nv[K];
+    EACH(k) nv[k] = g->nv[k];
+    if (x.two_sided)
+        EACH(k) {
+            nl[k] = vf_flip(nl[k], nv[k]);
+            nv[k] = vf_abs(nv[k]);
+        }
+    EACH(k) {
+        vm seen = vm_and(vf_lt(splat(0.0f), nl[k]), vf_lt(splat(0.0f), nv[k]));
+        t[k].nl = vf_where(seen, nl[k]);
+        t[k].nv = vf_max(nv[k], splat(TINY));
+    }
+}
+
+OP void diffuse(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *f)
+{
+    switch (x.diffuse) {
 #define FACET_DIFFUSE(id, name, ...)                                                                                  \
     case FACET_DIFFUSE_##id:                                                                                         \
-        if (FACET_HAS(name)) EACH(k) f[k] = diffuse_##name(s[k], t[k]);                                              \
+        if (FACET_HAS(name)) EACH(k) f[k] = diffuse_##name(surface_at(g, p, k), t[k]);                               \
         break;
 #include "models.def"
     }
 }
 
-OP void distribution(const plan_fields *p, const surface *s, const incidence *t, vf *D)
+OP void distribution(const group *g, features x, const plan_fields *p, const incidence *t, vf *D)
 {
-    switch ((facet_distribution)p->distribution) {
+    switch (x.distribution) {
 #define FACET_DISTRIBUTION(id, name, ...)                                                                             \
     case FACET_DISTRIBUTION_##id:                                                                                    \
-        if (FACET_HAS(name)) EACH(k) D[k] = distribution_##name(s[k], t[k]);                                         \
+        if (FACET_HAS(name)) EACH(k) D[k] = distribution_##name(surface_at(g, p, k), t[k]);                          \
         break;
 #include "models.def"
     }
 }
 
-OP void visibility(const plan_fields *p, const surface *s, const incidence *t, vf *V)
+OP void visibility(const group *g, features x, const plan_fields *p, const incidence *t, vf *V)
 {
-    switch ((enum visibility)p->visibility) {
+    switch (x.visibility) {
 #define FACET_VISIBILITY(masking, distribution, properties)                                                           \
     case VISIBILITY_##masking##_##distribution:                                                                      \
         if (FACET_HAS(masking) && FACET_HAS(distribution))                                                           \
-            EACH(k) V[k] = visibility_##masking##_##distribution(s[k], t[k]);                                        \
+            EACH(k) V[k] = visibility_##masking##_##distribution(surface_at(g, p, k), t[k]);                         \
         break;
 #include "models.def"
     case VISIBILITY_NONE:
@@ -217,150 +203,324 @@ OP void visibility(const plan_fields *p, const surface *s, const incidence *t, v
     }
 }
 
-OP void fresnel(const plan_fields *p, const surface *s, const incidence *t, vf3 *F)
+OP void fresnel(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *F)
 {
-    switch ((facet_fresnel)p->fresnel) {
+    switch (x.fresnel) {
 #define FACET_FRESNEL(id, name, ...)                                                                                  \
     case FACET_FRESNEL_##id:                                                                                         \
-        if (FACET_HAS(name)) EACH(k) F[k] = fresnel_##name(s[k], t[k]);                                              \
+        if (FACET_HAS(name)) EACH(k) F[k] = fresnel_##name(surface_at(g, p, k), t[k]);                               \
         break;
 #include "models.def"
     }
 }
 
-OP void add_light(group *g, const job *j, bool specular, const facet_light *light, size_t i)
+OP void add_light(group *g, features x, const job *j, const facet_light *light, size_t i)
 {
     const plan_fields *p = j->plan;
-    vf3 l[K], irradiance[K], f[K];
+    vf3 l[K], f[K], E[K];
+    vf nl[K];
     incidence t[K];
 
-    load_directional(g, j, light, i, l, irradiance);
+    load_direction(g, x, j, light, i, l);
     EACH(k) {
-        vf nl = vf_flip(dot(g->n[k], l[k]), g->flip[k]);
-        t[k].nl = vf_where(vm_and(g->faces[k], vf_lt(splat(0.0f), nl)), nl);
-        t[k].vl = dot(g->v[k], l[k]);
+        nl[k] = dot(LOAD3(g, NORMAL, k), l[k]);
+        t[k].vl = t[k].hh = t[k].nw2 = t[k].nxw2 = splat(0.0f);
         f[k] = ZERO3;
     }
-    diffuse(p, g->s, t, f);
-    if (specular) {
+    if (x.view)
+        EACH(k) {
+            vf3 n = LOAD3(g, NORMAL, k), v = LOAD3(g, VIEW, k), w = add3(v, l[k]), nxw = cross(n, w);
+            t[k].vl = dot(v, l[k]);
+            t[k].hh = dot(w, w);
+            t[k].nw2 = square(dot(n, w));
+            t[k].nxw2 = dot(nxw, nxw);
+        }
+    face(g, x, nl, t);
+    diffuse(g, x, p, t, f);
+    if (SPECULAR_BUILT && x.distribution != FACET_DISTRIBUTION_NONE) {
         vf D[K], V[K];
         vf3 F[K];
         EACH(k) {
-            vf3 w = add3(g->v[k], l[k]), nxw = cross(g->n[k], w);
-            t[k].hh = dot(w, w);
-            t[k].nw2 = square(dot(g->n[k], w));
-            t[k].nxw2 = dot(nxw, nxw);
             D[k] = V[k] = splat(0.0f);
             F[k] = ZERO3;
         }
-        distribution(p, g->s, t, D);
-        visibility(p, g->s, t, V);
-        fresnel(p, g->s, t, F);
-        if (p->coupled) EACH(k) f[k] = mul3(f[k], one_minus3(F[k]));
+        distribution(g, x, p, t, D);
+        visibility(g, x, p, t, V);
+        fresnel(g, x, p, t, F);
+        if (x.coupled) EACH(k) f[k] = mul3(f[k], one_minus3(F[k]));
         EACH(k) f[k] = mad3(F[k], same3(D[k] * V[k]), f[k]);
     }
-    EACH(k) g->sum[k] = mad3(f[k], irradiance[k], g->sum[k]);
+    load_irradiance(g, x, j, light, i, E);
+    EACH(k) g->sum[k] = mad3(f[k], E[k], g->sum[k]);
 }
 
-/* ---- A group ----------------------------------------------------------------------------------------------------- */
+/* ---- The end of a group ------------------------------------------------------------------------------------------- */
 
-/* Adds what is there without a light, writes the group, and returns a bit for each sample that was invalid. */
-OP uint32_t finish(group *g, const job *j, float *const *radiance)
+/* The component whose bits are the largest: one that is negative, infinite or NaN, if there is one. */
+OP vf largest(vf3 a) { return vf_bits_max(vf_bits_max(a.x, a.y), a.z); }
+
+/* A sign where a is above the limit, negative or NaN; where a >= 0 is below it. */
+OP vf above(vf a, float limit) { return vf_or(a, vf_bits_minus(splat(limit), a)); }
+OP vf below(vf a, float limit) { return vf_bits_minus(a, splat(limit)); }
+
+/* Adds what is there without a light. Returns a bit for each sample that a light's or the destination's value made
+ * invalid, and is 0. */
+OP uint32_t add_constants(group *g, const job *j, float *const *radiance)
 {
-    const uint32_t lanes = (uint32_t)((1ull << VF_LANES) - 1);
     uint32_t invalid = 0;
-    EACH(k) {
-        const int at = k * VF_LANES;
-        vf3 out = add3(mad3(g->s[k].albedo, splat3(j->ambient), g->sum[k]), splat3(j->plan->emission));
-        if (j->flags & FACET_ACCUMULATE) {
-            vf3 before = { vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) };
-            take3(&g->is_finite[k], before);
-            out = add3(out, not_negative3(before));
+    if (j->constant_radiance)
+        EACH(k) {
+            surface s = surface_at(g, j->plan, k);
+            g->sum[k] = add3(mad3(s.albedo, splat3(j->ambient), g->sum[k]), splat3(j->plan->emission));
         }
-        vm valid = vm_and(vf_lt(splat(0.0f), dot(g->n[k], g->n[k])), vf_eq(g->is_finite[k], splat(0.0f)));
-        vf_store(radiance[0] + at, vf_where(valid, vf_min(not_negative(out.x), splat(FLT_MAX))));
-        vf_store(radiance[1] + at, vf_where(valid, vf_min(not_negative(out.y), splat(FLT_MAX))));
-        vf_store(radiance[2] + at, vf_where(valid, vf_min(not_negative(out.z), splat(FLT_MAX))));
-        invalid |= (~vm_bits(valid) & lanes) << at;
+    if (j->flags & FACET_ACCUMULATE)
+        EACH(k) {
+            const int at = k * VF_LANES;
+            vf3 before = { vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) };
+            g->is_finite[k] = g->is_finite[k] + (before.x - before.x) + (before.y - before.y) + (before.z - before.z);
+            g->sum[k] = add3(g->sum[k], not_negative3(before));
+        }
+    if (j->check_lights || j->flags & FACET_ACCUMULATE)
+        EACH(k) {
+            vm valid = vf_eq(g->is_finite[k], splat(0.0f));
+            g->sum[k] = (vf3){ vf_where(valid, g->sum[k].x), vf_where(valid, g->sum[k].y), vf_where(valid, g->sum[k].z) };
+            invalid |= (~vm_bits(valid) & LANES(VF_LANES)) << k * VF_LANES;
+        }
+    return invalid;
+}
+
+/* Writes the group. */
+OP void store(const group *g, float *const *radiance)
+{
+    EACH(k) {
+        vf3 out = g->sum[k];
+        if (__builtin_expect(vf_signs(above(largest(out), FLT_MAX)) != 0, 0))
+            out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
+        vf_store(radiance[0] + k * VF_LANES, out.x);
+        vf_store(radiance[1] + k * VF_LANES, out.y);
+        vf_store(radiance[2] + k * VF_LANES, out.z);
+    }
+}
+
+/* ---- A block: groups in a row ------------------------------------------------------------------------------------ */
+
+/* Up to BLOCK samples of a batch, or one group that was mended. */
+typedef struct {
+    const float *component[COMPONENT_COUNT];
+    float *radiance[3];
+    size_t i, count;                     /* its first sample in the batch; its samples */
+    uint64_t covered;                    /* a bit a sample */
+    bool mended;
+} block;
+
+/* The bits of a vector's three components, together. */
+OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
+
+/* Whether a sample of the group may need mending; errs on the side of yes: several components' bits together can look like
+ * an infinity, but not while all are of magnitude below 2. Each check leaves a sign where something is wrong. */
+OP bool needs_mending(const group *g, features x, const plan_fields *p)
+{
+    uint32_t odd = 0;
+    EACH(k) {
+        vf n = any_bits(LOAD3(g, NORMAL, k)), finite = n, wrong = below(vf_abs(n), FLT_TRUE_MIN);
+        if (x.view) finite = vf_or(finite, any_bits(LOAD3(g, VIEW, k)));
+        finite = vf_abs(finite);
+        if (x.needed & FACET_STREAM_ALBEDO) finite = vf_or(finite, any_bits(LOAD3(g, ALBEDO, k)));
+        wrong = vf_or(wrong, above(finite, FLT_MAX));
+        if (x.needed & FACET_STREAM_SIGMA) wrong = vf_or(wrong, above(LOAD(g, SIGMA, k), p->sigma_max));
+        vf unit = splat(0.0f);
+        if (x.needed & FACET_STREAM_F0) unit = largest(LOAD3(g, F0, k));
+        if (x.needed & FACET_STREAM_ALPHA) {
+            vf alpha = LOAD(g, ALPHA, k);
+            unit = vf_bits_max(unit, alpha);
+            wrong = vf_or(wrong, below(alpha, FACET_ALPHA_FLOOR));
+        }
+        wrong = vf_or(wrong, above(unit, 1.0f));
+        odd |= vf_signs(wrong);
+    }
+    return odd != 0;
+}
+
+/* Shades the block's groups from `at` on, as long as they are whole, covered and in no need of mending. Returns where it stopped; adds to *invalid the samples that a light or the destination made invalid. */
+OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint64_t *invalid)
+{
+    for (; at + GROUP <= b->count; at += GROUP) {
+        if (((uint32_t)(b->covered >> at) & LANES(GROUP)) != LANES(GROUP)) break;
+
+        float *const radiance[3] = { b->radiance[0] + at, b->radiance[1] + at, b->radiance[2] + at };
+        group g;
+        g.component = b->component;
+        g.at = at;
+        if (!b->mended && needs_mending(&g, x, j->plan)) break;
+        prepare(&g, x, j);
+        const size_t lights = x.plain ? 1 : j->light_count;
+        for (size_t light = 0; light < lights; light++) add_light(&g, x, j, &j->lights[light], b->i + at);
+        if (!x.plain) *invalid |= (uint64_t)add_constants(&g, j, radiance) << at;
+        store(&g, radiance);
+    }
+    return at;
+}
+
+typedef size_t block_shader(const job *, const block *, size_t at, uint64_t *invalid);
+
+/* Any block of any batch. */
+static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, size_t at, uint64_t *invalid)
+{
+    const plan_fields *p = j->plan;
+    const features x = {
+        .diffuse = (facet_diffuse)p->diffuse,
+        .distribution = (facet_distribution)p->distribution,
+        .visibility = (enum visibility)p->visibility,
+        .fresnel = (facet_fresnel)p->fresnel,
+        .needed = p->needed,
+        .coupled = p->coupled,
+        .view = j->streams & FACET_STREAM_VIEW,
+        .two_sided = j->flags & FACET_TWO_SIDED,
+    };
+    return shade_block(j, x, b, at, invalid);
+}
+
+/* The rows of special.def: the same body with constants, for plain batches of one-sided samples. */
+#define FACET_SPECIAL(diffuse_, distribution_, masking, fresnel_, coupled_)                                           \
+    static __attribute__((noinline)) size_t shade_##diffuse_##_##distribution_##_##masking##_##fresnel_##_##coupled_( \
+        const job *j, const block *b, size_t at, uint64_t *invalid)                                                  \
+    {                                                                                                                \
+        const features x = { .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                           \
+                             .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                       \
+                             .visibility = VISIBILITY_##masking##_##distribution_,                                   \
+                             .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                           \
+                             .needed = FACET_STREAM_ALBEDO | FACET_STREAM_ALPHA |                                    \
+                                       (DIFFUSE_PROPERTIES_##diffuse_ & TERMS ? FACET_STREAM_SIGMA : 0) |            \
+                                       (FRESNEL_PROPERTIES_##fresnel_ & F0 ? FACET_STREAM_F0 : 0),                   \
+                             .coupled = coupled_, .view = true, .plain = true };                                     \
+        return shade_block(j, x, b, at, invalid);                                                                    \
+    }
+#include "special.def"
+
+static block_shader *choose_shader(const job *j)
+{
+    const plan_fields *p = j->plan;
+    const bool plain = j->light_count == 1 && !j->check_lights && !j->constant_radiance
+                       && j->streams & FACET_STREAM_VIEW && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
+    if (!plain) return shade_any;
+#define FACET_SPECIAL(diffuse_, distribution_, masking, fresnel_, coupled_)                                           \
+    if (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                  \
+        && p->diffuse == DIFFUSE_##diffuse_ && p->visibility == VISIBILITY_##masking##_##distribution_                \
+        && p->fresnel == FRESNEL_##fresnel_ && p->coupled == coupled_)                                                \
+        return shade_##diffuse_##_##distribution_##_##masking##_##fresnel_##_##coupled_;
+#include "special.def"
+    return shade_any;
+}
+
+/* ---- What keeps the mathematics above free of special cases --------------------------------------------------------
+ * Nearly every group is whole and covered, has normals and finite values, and parameters in their domains. One that has
+ * not is copied, mended, shaded like any other, and written sample by sample. */
+
+/* Fills `mended` from b's samples at `at`, with zeros behind the end, clamps what is outside its domain. Returns a bit for
+ * each sample that is invalid: without a normal, or not finite. */
+OP uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GROUP])
+{
+    const plan_fields *p = j->plan;
+    const size_t count = b->count - at < GROUP ? b->count - at : GROUP;
+    uint32_t invalid = 0;
+    vf is_finite[K];
+    EACH(k) is_finite[k] = splat(0.0f);
+
+#define CLAMP_GEOMETRY(a, low, high) (a)
+#define CLAMP_MATERIAL(a, low, high) clamp(a, low, high)
+#define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
+    for (int c = COMPONENT_##id; c <= COMPONENT_##id##_LAST; c++) {                                                  \
+        if (!b->component[c]) continue;                                                                              \
+        for (size_t lane = 0; lane < GROUP; lane++) values[c][lane] = lane < count ? b->component[c][at + lane] : 0.0f; \
+        EACH(k) {                                                                                                    \
+            vf a = vf_load(values[c] + k * VF_LANES);                                                                \
+            if (j->streams & FACET_STREAM_##id) is_finite[k] = is_finite[k] + (a - a);                               \
+            vf_store(values[c] + k * VF_LANES, CLAMP_##owner(a, low, high));                                         \
+        }                                                                                                            \
+    }
+#include "streams.def"
+    EACH(k) {
+        const float *n = values[COMPONENT_NORMAL] + k * VF_LANES;
+        vm no_normal = vf_eq(any_bits((vf3){ vf_load(n), vf_load(n + GROUP), vf_load(n + 2 * GROUP) }), splat(0.0f));
+        uint32_t bits = vm_bits(no_normal) | ~vm_bits(vf_eq(is_finite[k], splat(0.0f)));
+        invalid |= (bits & LANES(VF_LANES)) << k * VF_LANES;
     }
     return invalid;
 }
 
-/* Shades the group whose samples stand at `at` in `stream`, and at i in the batch (for the lights' streams); `radiance`
- * is where the result goes. */
-OP uint32_t shade_group(const job *j, const float *const *stream, size_t at, size_t i, float *const *radiance)
+/* One group, with care. Returns a bit for each sample that is covered and invalid. */
+static __attribute__((noinline)) uint32_t shade_mended(const job *j, const block *b, size_t at, block_shader *shader)
 {
-    const bool specular = SPECULAR_BUILT && j->plan->distribution;
-    group g;
-    EACH(k) {
-        g.is_finite[k] = splat(0.0f);
-        g.sum[k] = ZERO3;
+    const uint32_t covered = (uint32_t)(b->covered >> at) & LANES(GROUP);
+    if (!covered) return 0;
+
+    float values[COMPONENT_COUNT][GROUP], result[3][GROUP];
+    uint64_t invalid = mend(j, b, at, values);
+    block m = { .i = b->i + at, .count = GROUP, .covered = LANES(GROUP), .mended = true };
+    for (int c = 0; c < COMPONENT_COUNT; c++) m.component[c] = values[c];
+    for (int c = 0; c < 3; c++) {
+        m.radiance[c] = result[c];
+        for (size_t lane = 0; lane < GROUP; lane++)
+            result[c][lane] = j->flags & FACET_ACCUMULATE && covered >> lane & 1 ? b->radiance[c][at + lane] : 0.0f;
     }
-    load3(j, stream, STREAM_NORMAL, FACET_STREAM_NORMAL, at, g.n, g.is_finite);
-    load_view(&g, j, stream, at);
-    load_diffuse(&g, j, stream, at);
-    load_specular(&g, j, specular, stream, at);
-    for (size_t light = 0; light < j->light_count; light++) add_light(&g, j, specular, &j->lights[light], i);
-    return finish(&g, j, radiance);
+    shader(j, &m, 0, &invalid);
+    for (int c = 0; c < 3; c++)
+        for (size_t lane = 0; lane < GROUP; lane++)
+            if (covered >> lane & 1) b->radiance[c][at + lane] = invalid >> lane & 1 ? 0.0f : result[c][lane];
+    return (uint32_t)invalid & covered;
 }
 
-/* ---- A batch --------------------------------------------------------------------------------------------------- */
+/* ---- A batch ------------------------------------------------------------------------------------------------------ */
 
-/* The group's coverage bits; reads no byte past the batch's. */
-OP uint32_t coverage_bits(const uint8_t *coverage, size_t i, size_t left)
+/* A block's coverage; reads no byte past the batch's. */
+OP uint64_t covered_samples(const job *j, size_t i, size_t count)
 {
-    uint32_t bits = 0;
-    for (size_t k = 0; k < GROUP && k < left; k += 8) bits |= (uint32_t)coverage[(i + k) >> 3] >> ((i + k) & 7) << k;
-    return bits;
+    const uint64_t all = ~(uint64_t)0 >> (64 - count);
+    if (!j->coverage) return all;
+    uint64_t bits = 0;
+    for (size_t k = 0; k < count; k += 8) bits |= (uint64_t)j->coverage[(i + k) >> 3] << k;
+    return bits & all;
 }
 
-/* Copies the last, incomplete group of every stream that is read, and zeros behind it, to `block`. */
-OP void pad(const job *j, size_t i, float (*block)[GROUP], const float **stream)
+typedef float block_values[COMPONENT_COUNT][BLOCK];
+
+/* Fills blocks with what is uniform, the material's numbers too. */
+OP void open_uniform(const job *j, block_values values)
 {
-    for (int c = 0; c < STREAM_COUNT; c++) stream[c] = j->stream[c];
-#define FACET_STREAM(id, field, components, owner)                                                                    \
-    if (j->streams & ~j->uniform & FACET_STREAM_##id)                                                                \
-        for (int c = STREAM_##id; c <= STREAM_##id##_LAST; c++) {                                                    \
-            for (size_t lane = 0; lane < GROUP; lane++)                                                              \
-                block[c][lane] = lane < j->count - i ? j->stream[c][i + lane] : 0.0f;                                \
-            stream[c] = block[c];                                                                                    \
-        }
+    const size_t count = j->count < BLOCK ? j->count : BLOCK;
+#define FACET_STREAM(id, ...)                                                                                         \
+    if (j->uniform & FACET_STREAM_##id)                                                                              \
+        for (int c = COMPONENT_##id; c <= COMPONENT_##id##_LAST; c++)                                                \
+            for (size_t k = 0; k < count; k += VF_LANES) vf_store(values[c] + k, splat(*j->component[c]));
 #include "streams.def"
 }
 
 void KERNEL(const job *j)
 {
-    const uint32_t all = (uint32_t)((1ull << GROUP) - 1);
-    float block[STREAM_COUNT][GROUP], radiance_block[3][GROUP];
-    const float *padded[STREAM_COUNT];
+    block_shader *shader = choose_shader(j);
+    block_values uniform;
     size_t invalid = 0;
+    open_uniform(j, uniform);
 
-    for (size_t i = 0; i < j->count; i += GROUP) {
-        size_t left = j->count - i, here = left < GROUP ? left : GROUP;
-        uint32_t covered = left < GROUP ? (1u << left) - 1 : all;
-        if (j->coverage) covered &= coverage_bits(j->coverage, i, left);
-        if (!covered) continue;
-
-        const float *const *stream = j->stream;
-        size_t at = i;
-        if (left < GROUP) {
-            pad(j, i, block, padded);
-            stream = padded;
-            at = 0;
+    for (size_t i = 0; i < j->count; i += BLOCK) {
+        block b;
+        b.i = i;
+        b.count = j->count - i < BLOCK ? j->count - i : BLOCK;
+        b.covered = covered_samples(j, i, b.count);
+        b.mended = false;
+        for (int c = 0; c < 3; c++) b.radiance[c] = j->radiance[c] + i;
+#define FACET_STREAM(id, ...)                                                                                         \
+        for (int c = COMPONENT_##id; c <= COMPONENT_##id##_LAST; c++)                                                \
+            b.component[c] = j->uniform & FACET_STREAM_##id ? uniform[c] : j->component[c] ? j->component[c] + i : 0;
+#include "streams.def"
+        uint64_t bad = 0;
+        for (size_t at = 0; at < b.count;) {
+            at = shader(j, &b, at, &bad);
+            if (at >= b.count) break;
+            bad |= (uint64_t)shade_mended(j, &b, at, shader) << at;
+            at += GROUP;
         }
-        float *radiance[3];
-        for (int c = 0; c < 3; c++) {
-            radiance[c] = covered == all ? j->radiance[c] + i : radiance_block[c];
-            if (covered != all)
-                for (size_t lane = 0; lane < GROUP; lane++)
-                    radiance_block[c][lane] = j->flags & FACET_ACCUMULATE && lane < here ? j->radiance[c][i + lane] : 0.0f;
-        }
-        uint32_t invalid_bits = shade_group(j, stream, at, i, radiance) & covered;
-        if (covered != all)
-            for (int c = 0; c < 3; c++)
-                for (size_t lane = 0; lane < here; lane++)
-                    if (covered >> lane & 1) j->radiance[c][i + lane] = radiance_block[c][lane];
-        for (; invalid_bits; invalid_bits &= invalid_bits - 1) invalid++;
+        for (; bad; bad &= bad - 1) invalid++;
     }
     if (j->invalid) *j->invalid += invalid;
 }

@@ -40,20 +40,6 @@ static const row status_rows[] = {
 };
 
 /* Every enumerator has a row: the highest index is the number of rows less one. (-Wswitch finds one missing at the end.) */
-enum {
-#define FACET_DIFFUSE(...) + 1
-    DIFFUSE_ROWS = 0
-#include "models.def"
-#define FACET_DISTRIBUTION(...) + 1
-    , DISTRIBUTION_ROWS = 0
-#include "models.def"
-#define FACET_MASKING(...) + 1
-    , MASKING_ROWS = 0
-#include "models.def"
-#define FACET_FRESNEL(...) + 1
-    , FRESNEL_ROWS = 0
-#include "models.def"
-};
 #define COUNT(rows) (sizeof rows / sizeof rows[0])
 _Static_assert(COUNT(diffuse_rows) == DIFFUSE_ROWS && COUNT(distribution_rows) == DISTRIBUTION_ROWS
                && COUNT(masking_rows) == MASKING_ROWS && COUNT(fresnel_rows) == FRESNEL_ROWS, "models.def lacks a row");

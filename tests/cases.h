@@ -6,7 +6,7 @@
 #include "facet.h"
 
 typedef struct {
-    char name[64];           /* "oren-nayar", "ggx/smith", "ggx/smith-correlated/schlick", "fujii+ggx/smith/schlick" */
+    char name[64];           /* "oren-nayar", "ggx/smith", "fujii+ggx/smith-correlated/schlick" */
     facet_material material; /* models and `coupled` alone; parameters are zero, streams none */
     uint32_t streams;        /* FACET_STREAM_ALBEDO … that the models read */
     float sigma_max;         /* domain of sigma: [0, sigma_max]; 0: none */
@@ -14,7 +14,8 @@ typedef struct {
 } kernel_case;
 
 /* Every diffuse row alone; every masking under its distribution with Fresnel one; every Fresnel row under the first
- * specular one; and every diffuse row, coupled, under a specular one with Schlick. */
+ * specular one; every diffuse row, coupled, under the first specular one with Schlick; and every row of special.def. Of
+ * these, what the build holds. */
 int case_count(void);
 const kernel_case *case_at(int index);
 

@@ -15,8 +15,12 @@ typedef struct {
 typedef struct { double nl, nv, vl, nh, vh; } cosines;
 cosines reference_cosines(const sample *s);
 
-/* Radiance of one light at one sample: the material's models, with the sample's albedo, sigma, alpha, f0 in place of the
- * material's, and the material's f90 (0: 1). */
+/* Radiance of one light at one sample: the material's models, with the sample's albedo, sigma, alpha, f0 in place of
+ * the material's, and the material's f90 (0: 1). */
 void reference_radiance(const facet_material *m, const sample *s, double radiance[3]);
+
+/* The same, and its magnitude: what rounding errors are relative to. It is the radiance but for terms that cancel:
+ * Fujii's s0 counts as |s0|, 1 - F of `coupled` as 1, and of Schlick's five factors 1 - vh one as 1. */
+void reference_terms(const facet_material *m, const sample *s, double radiance[3], double magnitude[3]);
 
 #endif

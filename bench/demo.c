@@ -1,0 +1,306 @@
+/* facet-demo: a small software rasterizer that shades its tiles with facet, as a rasterizer backend would. */
+#include "console.h"
+#include "demo_options.h"
+#include "image.h"
+#include "raster.h"
+#include "shading_rate.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Panels ---------------------------------------------------------------------------------------------------- */
+
+static const float grid_alpha[] = {0.05f, 0.1f, 0.2f, 0.35f, 0.6f, 1.0f};
+static const float grid_sigma[] = {0.0f, 0.3f, 0.6f, 1.0f};
+
+enum {
+    GRID_COLUMNS = sizeof grid_alpha / sizeof *grid_alpha,
+    GRID_ROWS = sizeof grid_sigma / sizeof *grid_sigma,
+    PANEL_LIMIT = GRID_COLUMNS * GRID_ROWS
+};
+
+/* What one run renders: the same view in every panel, each with its own plan. */
+typedef struct scene {
+    const options *options;
+    mesh mesh;
+    raster raster;
+    facet_plan plans[PANEL_LIMIT];
+    size_t columns, rows;                /* of panels */
+    size_t width, height;                /* of the picture, pixels */
+    uint8_t *rgba;
+    float *rgb;                          /* linear radiance where a PFM is wanted, or NULL */
+    double raster_seconds, shade_seconds, encode_seconds;
+    size_t covered;
+} scene;
+
+static bool has_sigma(facet_diffuse model)
+{
+    return model != FACET_DIFFUSE_NONE && model != FACET_DIFFUSE_LAMBERT;
+}
+
+static facet_material panel_material(const options *o, size_t column, size_t row)
+{
+    facet_material m = o->material;
+    bool rough = o->layout == LAYOUT_GRID || (o->layout == LAYOUT_COMPARE && column == 1);
+    if (rough && !has_sigma(m.diffuse.model))
+        m.diffuse.model = FACET_DIFFUSE_OREN_NAYAR;
+    if (o->layout == LAYOUT_COMPARE && column == 0)
+        m.diffuse.model = FACET_DIFFUSE_LAMBERT;
+    if (o->layout == LAYOUT_COMPARE && column == 1 && !(m.diffuse.sigma > 0))
+        m.diffuse.sigma = 0.7f;
+    if (o->layout == LAYOUT_GRID) {
+        m.specular.model = FACET_DISTRIBUTION_GGX;
+        m.specular.alpha = grid_alpha[column];
+        m.diffuse.sigma = grid_sigma[row];
+    }
+    return m;
+}
+
+static bool facet_refused(const facet_error *error)
+{
+    char text[256];
+    facet_error_describe(error, text, sizeof text);
+    return console_error("%s", text);
+}
+
+static bool plan_panels(scene *s)
+{
+    const options *o = s->options;
+    s->columns = o->layout == LAYOUT_GRID ? GRID_COLUMNS : o->layout == LAYOUT_COMPARE ? 2 : 1;
+    s->rows = o->layout == LAYOUT_GRID ? GRID_ROWS : 1;
+    for (size_t i = 0; i < s->columns * s->rows; i++) {
+        facet_material material = panel_material(o, i % s->columns, i / s->columns);
+        facet_error error;
+        if (facet_plan_init(&s->plans[i], &material, o->target, &error) != FACET_OK)
+            return facet_refused(&error);
+    }
+    return true;
+}
+
+/* ---- A tile, from G-buffer to pixels --------------------------------------------------------------------------- */
+
+typedef struct tile {
+    gbuffer g;
+    float radiance[3][TILE_SAMPLES];
+    float pixel[3][TILE_SAMPLES], opacity[TILE_SAMPLES];   /* pixel x, y at y TILE_WIDTH + x */
+    size_t x, y, width, height;                            /* in its panel, pixels */
+} tile;
+
+/* The studio's wall: brightest behind the mesh, darker to the corners and the floor. */
+static void soft_backdrop(const options *o, size_t x, size_t y, float out[3])
+{
+    static const float centre[3] = {0.20f, 0.215f, 0.24f}, rim[3] = {0.021f, 0.023f, 0.027f};
+    double u = ((double)x + 0.5) / (double)o->width - 0.5, v = ((double)y + 0.5) / (double)o->height - 0.42;
+    double t = 1 / (1 + 5 * (u * u + v * v)) / (1 + 5 * (u * u + v * v));
+    for (int c = 0; c < 3; c++)
+        out[c] = rim[c] + (float)t * (centre[c] - rim[c]);
+}
+
+static void backdrop_at(const options *o, size_t x, size_t y, float out[3])
+{
+    if (o->backdrop == BACKDROP_SOFT)
+        soft_backdrop(o, x, y, out);
+    else
+        memcpy(out, o->backdrop_colour, 3 * sizeof *out);
+}
+
+/* Averages pixel x, y of the tile over its samples: those not covered show the backdrop; with none behind it, the
+ * covered ones alone make the colour, and their share the opacity. */
+static void average(const options *o, tile *t, size_t x, size_t y)
+{
+    size_t edge = o->samples, to = y * TILE_WIDTH + x, covered = 0;
+    float sum[3] = {0, 0, 0}, behind[3] = {0, 0, 0};
+    for (size_t i = 0; i < edge * edge; i++) {
+        size_t from = (y * edge + i / edge) * TILE_WIDTH + x * edge + i % edge;
+        if (!(t->g.coverage[from / 8] >> from % 8 & 1))
+            continue;
+        covered++;
+        for (int c = 0; c < 3; c++)
+            sum[c] += t->radiance[c][from];
+    }
+    size_t shown = o->backdrop == BACKDROP_NONE ? covered : edge * edge;
+    if (shown > covered)
+        backdrop_at(o, t->x + x, t->y + y, behind);
+    t->opacity[to] = (float)covered / (float)(edge * edge);
+    for (int c = 0; c < 3; c++)
+        t->pixel[c][to] = shown ? (sum[c] + (float)(shown - covered) * behind[c]) / (float)shown : 0;
+}
+
+static bool encode(scene *s, const tile *t, size_t first)
+{
+    bool transparent = s->options->backdrop == BACKDROP_NONE;
+    facet_image image = {
+        .width = t->width, .height = t->height, .stride = TILE_WIDTH,
+        .radiance = {t->pixel[0], t->pixel[1], t->pixel[2]}, .exposure = s->options->exposure,
+        .opacity_from = transparent ? FACET_OPACITY_STREAM : FACET_OPACITY_FULL, .opacity = t->opacity,
+        .pixels = s->rgba + 4 * first, .pitch = (ptrdiff_t)(4 * s->width),
+    };
+    facet_error error;
+    return facet_encode(&image, &error) == FACET_OK || facet_refused(&error);
+}
+
+static void keep_radiance(scene *s, const tile *t, size_t first)
+{
+    for (size_t i = 0; i < t->width * t->height; i++)
+        for (size_t c = 0; c < 3; c++)
+            s->rgb[3 * (first + i / t->width * s->width + i % t->width) + c] =
+                t->pixel[c][i / t->width * TILE_WIDTH + i % t->width];
+}
+
+/* Shades and encodes the tile's G-buffer for one panel. */
+static bool finish_tile(scene *s, tile *t, size_t panel)
+{
+    const options *o = s->options;
+    size_t first = (panel / s->columns * o->height + t->y) * s->width + panel % s->columns * o->width + t->x;
+    facet_batch batch = tile_batch(o, &t->g, t->radiance);
+    facet_error error;
+    double start = console_seconds();
+    if (t->g.covered && facet_shade(&s->plans[panel], &batch, &error) != FACET_OK)
+        return facet_refused(&error);
+    double shaded = console_seconds();
+    s->shade_seconds += shaded - start;
+    s->covered += t->g.covered;
+    for (size_t i = 0; i < t->width * t->height; i++)
+        average(o, t, i % t->width, i / t->width);
+    if (s->rgb)
+        keep_radiance(s, t, first);
+    bool encoded = encode(s, t, first);
+    s->encode_seconds += console_seconds() - shaded;
+    return encoded;
+}
+
+/* ---- A frame --------------------------------------------------------------------------------------------------- */
+
+static void draw(scene *s)
+{
+    enum { AT_ONCE = 256 };
+    double start = console_seconds();
+    for (size_t i = 0; i < s->mesh.triangle_count; i += AT_ONCE) {
+        size_t left = s->mesh.triangle_count - i;
+        raster_draw(&s->raster, &s->mesh, i, left < AT_ONCE ? left : AT_ONCE);
+        console_progress("rasterizing", i, s->mesh.triangle_count);
+    }
+    s->raster_seconds += console_seconds() - start;
+}
+
+static bool shade_frame(scene *s)
+{
+    const options *o = s->options;
+    size_t columns = (s->raster.width + TILE_WIDTH - 1) / TILE_WIDTH;
+    size_t count = columns * ((s->raster.height + TILE_HEIGHT - 1) / TILE_HEIGHT);
+    for (size_t i = 0; i < count; i++) {
+        tile t = {.x = i % columns * (TILE_WIDTH / o->samples), .y = i / columns * (TILE_HEIGHT / o->samples)};
+        t.width = o->width - t.x < TILE_WIDTH / o->samples ? o->width - t.x : TILE_WIDTH / o->samples;
+        t.height = o->height - t.y < TILE_HEIGHT / o->samples ? o->height - t.y : TILE_HEIGHT / o->samples;
+        double start = console_seconds();
+        raster_tile(&s->raster, &s->mesh, i % columns, i / columns, &t.g);
+        s->raster_seconds += console_seconds() - start;
+        for (size_t panel = 0; panel < s->columns * s->rows; panel++)
+            if (!finish_tile(s, &t, panel))
+                return false;
+        console_progress("shading", i, count);
+    }
+    return true;
+}
+
+/* Samples and pixels are capped so that no size overflows and memory stays at about a gigabyte. */
+static bool allocate(scene *s)
+{
+    enum { LIMIT = 1 << 25 };
+    const options *o = s->options;
+    s->width = o->width * s->columns;
+    s->height = o->height * s->rows;
+    if (o->width * o->samples > LIMIT / (o->height * o->samples) || s->width > LIMIT / s->height)
+        return console_error("--size %zux%zu: the picture would have more than %d samples or pixels", o->width,
+                             o->height, LIMIT);
+    s->rgba = malloc(4 * s->width * s->height);
+    s->rgb = o->pfm ? malloc(3 * sizeof *s->rgb * s->width * s->height) : NULL;
+    bool room = raster_init(&s->raster, o->width * o->samples, o->height * o->samples, (double)o->fov);
+    return (s->rgba && (s->rgb || !o->pfm) && room) || console_error("not enough memory for the picture");
+}
+
+static bool render(scene *s)
+{
+    const options *o = s->options;
+    if (!mesh_open(&s->mesh, o->mesh, o->flat) || !plan_panels(s) || !allocate(s))
+        return false;
+    mesh_orbit(&s->mesh, (double)o->azimuth, (double)o->elevation, (double)o->distance);
+    draw(s);
+    return shade_frame(s);
+}
+
+static bool write_files(const scene *s)
+{
+    const options *o = s->options;
+    return image_write_png(o->png, s->rgba, s->width, s->height, o->backdrop != BACKDROP_NONE) &&
+           (!o->pfm || image_write_pfm(o->pfm, s->rgb, s->width, s->height));
+}
+
+/* ---- The report ------------------------------------------------------------------------------------------------ */
+
+static void report_values(const char *name, const float *values, int count)
+{
+    printf("%s", name);
+    for (int i = 0; i < count; i++)
+        printf(" %g", (double)values[i]);
+    printf("\n");
+}
+
+static void report_plan(const facet_plan *plan, const char *title)
+{
+    char text[2048];
+    facet_plan_describe(plan, text, sizeof text);
+    printf("\n%s\n", title);
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
+        printf("  %s\n", line);
+}
+
+static void report(const scene *s, double write_seconds)
+{
+    const options *o = s->options;
+    printf("%s: %zux%zu, %s, %zu triangles, %zu samples covered\n", o->png, s->width, s->height, o->mesh,
+           s->mesh.triangle_count, s->covered);
+    if (o->layout == LAYOUT_GRID) {
+        report_values("alpha, left to right:", grid_alpha, GRID_COLUMNS);
+        report_values("sigma, top to bottom:", grid_sigma, GRID_ROWS);
+    }
+    printf("rasterize %.1f ms, shade %.1f ms, average and encode %.1f ms, write %.1f ms\n", 1e3 * s->raster_seconds,
+           1e3 * s->shade_seconds, 1e3 * s->encode_seconds, 1e3 * write_seconds);
+    report_plan(&s->plans[0], o->layout == LAYOUT_ONE ? "plan" : "plan of the first panel");
+    if (o->layout != LAYOUT_ONE)
+        report_plan(&s->plans[s->columns * s->rows - 1], "plan of the last panel");
+}
+
+static bool run(scene *s)
+{
+    console_start();
+    if (!render(s))
+        return false;
+    double start = console_seconds();
+    if (!write_files(s))
+        return false;
+    console_clear();
+    report(s, console_seconds() - start);
+    facet_material material = panel_material(s->options, 0, 0);
+    return !(s->options->seconds > 0) || shading_rate(s->options, &material, &s->mesh, &s->raster);
+}
+
+int main(int count, char **arguments)
+{
+    static scene s;
+    options o;
+    if (!options_read(&o, count, arguments))
+        return EXIT_FAILURE;
+    if (o.help || o.list) {
+        o.help ? options_help() : options_list();
+        return EXIT_SUCCESS;
+    }
+    s.options = &o;
+    bool done = run(&s);
+    mesh_free(&s.mesh);
+    raster_free(&s.raster);
+    free(s.rgba);
+    free(s.rgb);
+    return done ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,503 @@
+/* The public functions beside their arithmetic: words, plans as bytes, sizes, descriptions, threads, passes of lights. */
+#include "cases.h"
+#include "guarded.h"
+#include "harness.h"
+#include "refusals.h"
+#include "samples.h"
+#include "targets.h"
+
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALL_STREAMS = FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALPHA | FACET_STREAM_F0 };
+
+static const facet_target strict_scalar = { FACET_ARCH_SCALAR, FACET_TIER_STRICT };
+
+/* ---- Words ---------------------------------------------------------------------------------------------------------- */
+
+static void test_words(void)
+{
+    static const struct { facet_kind kind; int last; const char *word; } lasts[] = {
+        { FACET_KIND_DIFFUSE, FACET_DIFFUSE_FUJII, "fujii" },
+        { FACET_KIND_DISTRIBUTION, FACET_DISTRIBUTION_GGX, "ggx" },
+        { FACET_KIND_MASKING, FACET_MASKING_SMITH, "smith" },
+        { FACET_KIND_FRESNEL, FACET_FRESNEL_ONE, "one" },
+        { FACET_KIND_ARCH, FACET_ARCH_NEON, "neon" },
+        { FACET_KIND_TIER, FACET_TIER_STRICT, "strict" },
+        { FACET_KIND_STATUS, FACET_ERROR_SIZE, "a struct of a newer header uses what this library does not know" },
+    };
+    test("every enumerator has a word, and every word its enumerator");
+    for (size_t i = 0; i < sizeof lasts / sizeof lasts[0]; i++) {
+        const facet_kind kind = lasts[i].kind;
+        int value = 0;
+        for (const char *word; (word = facet_word(kind, value)); value++)
+            expect(facet_value(kind, word) == value, "'%s' is %d, not %d", word, facet_value(kind, word), value);
+        expect(value == lasts[i].last + 1, "kind %d has %d words", (int)kind, value);
+        const char *last = facet_word(kind, lasts[i].last);
+        expect(last && !strcmp(last, lasts[i].word), "%d of kind %d is '%s'", lasts[i].last, (int)kind, last ? last : "NULL");
+        expect(!facet_word(kind, -1) && !facet_word(kind, INT_MAX) && !facet_word(kind, INT_MIN), "a word for nothing");
+        expect(!facet_has(kind, value) && !facet_has(kind, -1) && !facet_has(kind, INT_MIN), "has what has no word");
+        expect(facet_value(kind, "no-such-word") == -1 && facet_value(kind, "") == -1 && facet_value(kind, NULL) == -1,
+               "kind %d: a value for no word", (int)kind);
+    }
+    test("unknown kinds have no words");
+    for (int kind = FACET_KIND_STATUS + 1; kind < FACET_KIND_STATUS + 300; kind++)
+        expect(!facet_word((facet_kind)kind, 0) && !facet_has((facet_kind)kind, 0) && facet_value((facet_kind)kind, "none") == -1,
+               "kind %d", kind);
+    expect(!facet_word((facet_kind)-1, 0) && !facet_has((facet_kind)-1, 0), "kind -1");
+}
+
+static void test_build(void)
+{
+    char version[32];
+    snprintf(version, sizeof version, "%d.%d.%d", FACET_VERSION_MAJOR, FACET_VERSION_MINOR, FACET_VERSION_PATCH);
+    test("version, best architecture, lanes");
+    expect(!strcmp(facet_version(), version), "facet_version is %s, the header's is %s", facet_version(), version);
+    const facet_arch best = facet_arch_best();
+    expect(best != FACET_ARCH_BEST && facet_has(FACET_KIND_ARCH, (int)best), "the best architecture is not there");
+    expect(facet_has(FACET_KIND_ARCH, FACET_ARCH_BEST) && facet_has(FACET_KIND_ARCH, FACET_ARCH_SCALAR), "no scalar");
+    for (int arch = FACET_ARCH_SCALAR; facet_word(FACET_KIND_ARCH, arch); arch++) {
+        const int lanes = facet_arch_lanes((facet_arch)arch);
+        expect(lanes == 0 || lanes == 1 || lanes == 4 || lanes == 8 || lanes == 16, "%d lanes", lanes);
+        expect(lanes > 0 || !facet_has(FACET_KIND_ARCH, arch), "'%s' without lanes", facet_word(FACET_KIND_ARCH, arch));
+        expect(lanes <= facet_arch_lanes(best) || !facet_has(FACET_KIND_ARCH, arch), "wider than the best");
+    }
+    expect(facet_arch_lanes((facet_arch)99) == 0 && facet_arch_lanes((facet_arch)-1) == 0, "lanes of no architecture");
+}
+
+/* ---- Materials and batches to work with ----------------------------------------------------------------------------- */
+
+static facet_material rich_material(void)
+{
+    return (facet_material){
+        .diffuse = { FACET_DIFFUSE_OREN_NAYAR, { 0.8f, 0.5f, 0.25f }, 0.5f },
+        .specular = { FACET_DISTRIBUTION_GGX, FACET_MASKING_SMITH_CORRELATED, 0.25f },
+        .fresnel = { FACET_FRESNEL_SCHLICK, { 0.04f, 0.05f, 0.06f }, 0.9f, { 1.5f, 1.6f, 1.7f }, { 0.5f, 0, 0 }, 1.25f },
+        .coupled = true,
+        .emission = { 0.1f, 0.2f, 0.3f },
+    };
+}
+
+static facet_plan make_plan(const facet_material *m, facet_target target)
+{
+    facet_plan plan;
+    expect(facet_plan_init(&plan, m, target, NULL) == FACET_OK, "a good material is refused");
+    return plan;
+}
+
+static sample_batch random_batch(int count, uint64_t seed)
+{
+    test_random r = { seed };
+    sample *samples = calloc((size_t)count, sizeof *samples);
+    if (!samples) abort();
+    for (int i = 0; i < count; i++) samples[i] = random_sample(&r, i % SAMPLES_KINDS, 0.01f, 1.5f);
+    sample_batch b = batch_of(samples, count);
+    for (int c = 0; c < 3; c++) memset(b.batch.radiance[c], 0, (size_t)count * sizeof(float));
+    free(samples);
+    return b;
+}
+
+static bool same_radiance(const facet_batch *a, const facet_batch *b)
+{
+    bool same = true;
+    for (int c = 0; c < 3; c++) same = same && !memcmp(a->radiance[c], b->radiance[c], a->count * sizeof(float));
+    return same;
+}
+
+/* ---- Plans ---------------------------------------------------------------------------------------------------------- */
+
+static void test_plan_bytes(void)
+{
+    test("plans of the same material are the same bytes, wherever they stand");
+    sample_batch a = random_batch(100, 1), b = random_batch(100, 1);
+    for (int i = 0; i < case_count(); i++) {
+        facet_plan plans[2], moved[3];
+        facet_material m = rich_material();
+        m.diffuse.model = case_at(i)->material.diffuse.model;
+        m.diffuse.sigma = case_at(i)->sigma_max / 2;
+        m.specular = case_at(i)->material.specular;
+        m.fresnel.model = case_at(i)->material.fresnel.model;
+        memset(&plans[0], 0x5a, sizeof plans[0]);
+        memset(&plans[1], 0xa5, sizeof plans[1]);
+        for (int k = 0; k < 2; k++) expect(facet_plan_init(&plans[k], &m, strict_scalar, NULL) == FACET_OK, "refused");
+        expect(!memcmp(&plans[0], &plans[1], sizeof plans[0]), "%s: plans differ", case_at(i)->name);
+        memcpy(&moved[1], &plans[0], sizeof plans[0]);
+        memset(&plans[0], 0, sizeof plans[0]);
+        facet_shade(&plans[1], &a.batch, NULL);
+        expect(facet_shade(&moved[1], &b.batch, NULL) == FACET_OK && same_radiance(&a.batch, &b.batch),
+               "%s: a copy shades otherwise", case_at(i)->name);
+    }
+    free_batch(&a);
+    free_batch(&b);
+
+    test("a plan tells its target");
+    const facet_material m = rich_material();
+    for (int arch = FACET_ARCH_BEST; facet_word(FACET_KIND_ARCH, arch); arch++)
+        for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++) {
+            facet_plan plan;
+            if (facet_plan_init(&plan, &m, (facet_target){ (facet_arch)arch, (facet_tier)tier }, NULL)) continue;
+            const facet_target target = facet_plan_target(&plan);
+            const facet_arch want = arch == FACET_ARCH_BEST ? facet_arch_best() : (facet_arch)arch;
+            expect(target.arch == want && target.tier == (facet_tier)tier, "%d %d is %d %d", arch, tier, (int)target.arch,
+                   (int)target.tier);
+        }
+}
+
+typedef struct { facet_plan plan; facet_batch *batch; facet_status status; size_t described; char text[1024]; } attempt;
+
+static void attempt_plan(void *argument)
+{
+    attempt *a = argument;
+    a->described = facet_plan_describe(&a->plan, a->text, sizeof a->text);
+    a->status = facet_shade(&a->plan, a->batch, NULL);
+}
+
+static void test_foreign_plans(void)
+{
+    test_random r = { 2 };
+    sample_batch b = random_batch(20, 2);
+    attempt a = { .batch = &b.batch };
+    const facet_material m = rich_material();
+    const facet_plan good = make_plan(&m, strict_scalar);
+
+    test("zeros, ones and random bytes are no plan");
+    for (int i = 0; i < 1000; i++) {
+        for (size_t k = 0; k < sizeof a.plan.opaque / sizeof a.plan.opaque[0]; k++)
+            a.plan.opaque[k] = i == 0 ? 0 : i == 1 ? UINT64_MAX : random_u64(&r);
+        const char *fault = fault_of(attempt_plan, &a);
+        expect(!fault, "%s", fault);
+        expect(a.status == FACET_ERROR_PLAN && a.described == 0, "status %d, %zu bytes described", (int)a.status, a.described);
+    }
+
+    test("cut short or with a byte changed, a plan does no harm");
+    const char *fault = NULL;
+    for (size_t at = 0; at < sizeof good && !fault; at++)
+        for (int i = 0; i < 17 && !fault; i++) {
+            a.plan = good;
+            if (i == 16) memset((char *)&a.plan + at, 0, sizeof good - at);
+            else ((unsigned char *)&a.plan)[at] = (unsigned char)(i < 8 ? random_u64(&r) : 1u << (i - 8) | 0x80u);
+            const facet_arch arch = facet_plan_target(&a.plan).arch;
+            if (facet_arch_lanes(arch) && !facet_has(FACET_KIND_ARCH, (int)arch)) continue;
+            fault = fault_of(attempt_plan, &a);
+            expect(!fault, "byte %zu: %s", at, fault);
+            expect(a.status == FACET_OK || a.status == FACET_ERROR_PLAN || a.status == FACET_ERROR_NULL, "byte %zu: status %d",
+                   at, (int)a.status);
+        }
+    free_batch(&b);
+}
+
+/* ---- Descriptions --------------------------------------------------------------------------------------------------- */
+
+typedef size_t describer(const void *what, char *text, size_t size);
+
+static size_t describe_plan(const void *plan, char *text, size_t size) { return facet_plan_describe(plan, text, size); }
+static size_t describe_error(const void *error, char *text, size_t size) { return facet_error_describe(error, text, size); }
+
+/* As snprintf: the whole length whatever the size, nothing written beyond it, a final 0 unless there is no room. */
+static void check_describe(describer *describe, const void *what, const char *begins)
+{
+    char whole[1024], part[1024];
+    const size_t length = describe(what, whole, sizeof whole);
+    if (!expect(length > 0 && length < sizeof whole && strlen(whole) == length, "%zu bytes", length)) return;
+    expect(!strncmp(whole, begins, strlen(begins)), "begins with '%.40s'", whole);
+    expect(describe(what, NULL, 0) == length, "another length without room");
+    for (size_t size = 0; size <= length + 2; size++) {
+        const size_t kept = size == 0 ? 0 : size <= length ? size - 1 : length;
+        memset(part, 0x7f, sizeof part);
+        expect(describe(what, part, size) == length, "another length with room for %zu", size);
+        expect(!memcmp(part, whole, kept) && (size == 0 || part[kept] == 0), "other text in %zu bytes", size);
+        for (size_t i = size; i < sizeof part; i++) expect(part[i] == 0x7f, "overruns %zu bytes", size);
+    }
+}
+
+static void test_descriptions(void)
+{
+    test("plans in words, at every size");
+    for (int i = 0; i < case_count(); i++)
+        for (uint32_t streams = 0; streams <= ALL_STREAMS; streams += FACET_STREAM_ALBEDO) {
+            facet_material m = rich_material();
+            m.diffuse.model = case_at(i)->material.diffuse.model;
+            m.specular = case_at(i)->material.specular;
+            m.fresnel.model = case_at(i)->material.fresnel.model;
+            m.streams = streams;
+            if (streams & FACET_STREAM_F0) memset(m.fresnel.f0, 0, sizeof m.fresnel.f0);
+            const facet_plan plan = make_plan(&m, strict_scalar);
+            check_describe(describe_plan, &plan, "kernel: f32 scalar strict");
+        }
+    const facet_plan none = { { 0 } };
+    char text[8];
+    expect(facet_plan_describe(&none, text, sizeof text) == 0, "a plan of zeros is described");
+    expect(facet_plan_describe(NULL, NULL, 0) == 0, "NULL is described");
+
+    test("errors in words, at every size");
+    static const struct { facet_error error; const char *words; } errors[] = {
+        { { FACET_OK, NULL, -1 }, "no error" },
+        { { FACET_ERROR_VALUE, "light.irradiance", 3 }, "light.irradiance[3]: a number is NaN, infinite or outside its domain" },
+        { { FACET_ERROR_NULL, "plan", -1 }, "plan: a pointer that is needed is NULL" },
+        { { FACET_ERROR_VALUE, "light.direction", INT_MAX }, "light.direction[2147483647]: a number" },
+        { { FACET_ERROR_VALUE, "light.direction", INT_MIN }, "light.direction: a number" },
+        { { (facet_status)99, "field", 0 }, "field[0]: " },
+    };
+    for (size_t i = 0; i < sizeof errors / sizeof errors[0]; i++)
+        check_describe(describe_error, &errors[i].error, errors[i].words);
+}
+
+/* ---- Sizes ---------------------------------------------------------------------------------------------------------- */
+
+/* A struct of `size` bytes: cut off, or with a tail of zeros. */
+static void resize(void *to, size_t size, const void *from, size_t whole)
+{
+    memset(to, 0, size);
+    memcpy(to, from, size < whole ? size : whole);
+}
+
+enum { TAIL = 40 };
+
+static void test_material_sizes(void)
+{
+    struct { facet_material m; unsigned char tail[TAIL]; } given;
+    const facet_material whole = rich_material();
+    test("a material cut short counts as filled with zeros; a longer one may end in zeros alone");
+    for (size_t size = 0; size <= sizeof whole + TAIL; size++) {
+        facet_plan plan = { { 0 } }, want = { { 0 } };
+        facet_material filled;
+        facet_error error, want_error;
+        resize(&filled, sizeof filled, &whole, size < sizeof whole ? size : sizeof whole);
+        memset(&given, 0xa5, sizeof given);
+        resize(&given, size, &whole, sizeof whole);
+        facet_plan_init(&want, &filled, strict_scalar, &want_error);
+        facet_plan_init_sized(&plan, sizeof plan, &given.m, size, strict_scalar, &error);
+        expect(error.code == want_error.code && !memcmp(&plan, &want, sizeof plan), "%zu bytes: status %d, not %d", size,
+               (int)error.code, (int)want_error.code);
+    }
+    for (size_t at = sizeof whole; at < sizeof whole + TAIL; at++) {
+        facet_plan plan = { { 7 } };
+        facet_error error;
+        resize(&given, sizeof given, &whole, sizeof whole);
+        given.tail[at - sizeof whole] = 1;
+        facet_plan_init_sized(&plan, sizeof plan, &given.m, sizeof whole + TAIL, strict_scalar, &error);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "material") && plan.opaque[0] == 7, "byte %zu is taken", at);
+    }
+}
+
+static void test_plan_sizes(void)
+{
+    struct { facet_plan plan; unsigned char beyond[TAIL]; } given;
+    const facet_material m = rich_material();
+    const facet_plan want = make_plan(&m, strict_scalar);
+    facet_error error;
+    test("a plan that is too small is refused; of a larger one the rest is untouched");
+    memset(&given, 0xa5, sizeof given);
+    for (size_t size = 0; size < sizeof want; size++) {
+        facet_plan_init_sized(&given.plan, size, &m, sizeof m, strict_scalar, &error);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "plan"), "%zu bytes: status %d", size, (int)error.code);
+    }
+    for (size_t i = 0; i < sizeof given; i++) expect(((unsigned char *)&given)[i] == 0xa5, "written on refusal");
+    facet_plan_init_sized(&given.plan, sizeof given, &m, sizeof m, strict_scalar, &error);
+    expect(error.code == FACET_OK && !memcmp(&given.plan, &want, sizeof want), "a larger plan differs");
+    for (int i = 0; i < TAIL; i++) expect(given.beyond[i] == 0xa5, "byte %d behind the plan is written", i);
+}
+
+static void test_batch_sizes(void)
+{
+    struct { facet_batch batch; unsigned char tail[TAIL]; } given;
+    sample_batch b = random_batch(10, 3), other = random_batch(10, 3);
+    facet_material m = rich_material();
+    m.streams = ALL_STREAMS;
+    const facet_plan plan = make_plan(&m, strict_scalar);
+    test("a batch cut short or made longer, alike; lights of another size are not misread");
+    for (size_t size = 0; size <= sizeof b.batch + TAIL; size += sizeof(void *)) {
+        facet_batch filled;
+        facet_error error, want_error;
+        resize(&filled, sizeof filled, &b.batch, size < sizeof filled ? size : sizeof filled);
+        memset(&given, 0xa5, sizeof given);
+        resize(&given, size, &other.batch, sizeof other.batch);
+        facet_shade(&plan, &filled, &want_error);
+        facet_shade_sized(&plan, &given.batch, size, sizeof(facet_light), &error);
+        expect(error.code == want_error.code && same_radiance(&b.batch, &other.batch), "%zu bytes: status %d, not %d", size,
+               (int)error.code, (int)want_error.code);
+    }
+    for (size_t at = 0; at < TAIL; at++) {
+        facet_error error;
+        resize(&given, sizeof given, &other.batch, sizeof other.batch);
+        given.tail[at] = 1;
+        facet_shade_sized(&plan, &given.batch, sizeof other.batch + TAIL, sizeof(facet_light), &error);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "batch"), "byte %zu is taken", at);
+    }
+    const size_t light_sizes[] = { 0, 4, sizeof(facet_light) - sizeof(void *), sizeof(facet_light) + sizeof(void *), SIZE_MAX };
+    for (size_t i = 0; i < sizeof light_sizes / sizeof light_sizes[0]; i++) {
+        facet_error error;
+        facet_shade_sized(&plan, &other.batch, sizeof other.batch, light_sizes[i], &error);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "lights"), "lights of %zu bytes: status %d", light_sizes[i],
+               (int)error.code);
+    }
+    free_batch(&b);
+    free_batch(&other);
+}
+
+static void test_image_sizes(void)
+{
+    struct { facet_image image; unsigned char tail[TAIL]; } given;
+    static const float light[4] = { 0.1f, 0.2f, 0.3f, 0.4f };
+    uint8_t pixels[16] = { 0 }, want[16] = { 0 };
+    const facet_image whole = { .width = 2, .height = 2, .radiance = { light, light, light }, .exposure = 2, .pixels = pixels };
+    test("an image cut short or made longer, alike");
+    for (size_t size = 0; size <= sizeof whole + TAIL; size += sizeof(void *)) {
+        facet_image filled;
+        facet_error error, want_error;
+        resize(&filled, sizeof filled, &whole, size < sizeof filled ? size : sizeof filled);
+        memset(&given, 0xa5, sizeof given);
+        resize(&given, size, &whole, sizeof whole);
+        if (filled.pixels) filled.pixels = want;
+        facet_encode(&filled, &want_error);
+        facet_encode_sized(&given.image, size, &error);
+        expect(error.code == want_error.code && !memcmp(pixels, want, sizeof pixels), "%zu bytes: status %d, not %d", size,
+               (int)error.code, (int)want_error.code);
+    }
+    for (size_t at = 0; at < TAIL; at++) {
+        facet_error error;
+        resize(&given, sizeof given, &whole, sizeof whole);
+        given.tail[at] = 1;
+        facet_encode_sized(&given.image, sizeof whole + TAIL, &error);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "image"), "byte %zu is taken", at);
+    }
+}
+
+/* ---- Passes of lights ----------------------------------------------------------------------------------------------- */
+
+enum { LIGHTS = 70, SHADED = 67 };
+
+/* All lights at once against a call for each, adding: in array order, so that strict results are the same bytes. */
+static void check_lights(size_t count, facet_target target)
+{
+    static facet_light lights[LIGHTS];
+    sample_batch at_once = random_batch(SHADED, 5), one_by_one = random_batch(SHADED, 5);
+    test_random r = { 6 };
+    facet_material m = rich_material();
+    memset(m.emission, 0, sizeof m.emission);
+    const facet_plan plan = make_plan(&m, target);
+    for (size_t i = 0; i < count; i++) {
+        const sample s = random_sample(&r, SAMPLES_UNIFORM, 0.1f, 1);
+        lights[i] = (facet_light){ .direction = { s.l[0], s.l[1], s.l[2] }, .irradiance = { 1, 2, (float)i + 1 } };
+    }
+    at_once.batch.lights = lights;
+    at_once.batch.light_count = count;
+    expect(facet_shade(&plan, &at_once.batch, NULL) == FACET_OK, "refused");
+    for (size_t i = 0; i < count; i++) {
+        one_by_one.batch.lights = &lights[i];
+        one_by_one.batch.light_count = 1;
+        one_by_one.batch.flags = i > 0 ? FACET_ACCUMULATE : 0;
+        expect(facet_shade(&plan, &one_by_one.batch, NULL) == FACET_OK, "refused");
+    }
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < SHADED; i++) {
+            const double got = (double)at_once.batch.radiance[c][i], want = (double)one_by_one.batch.radiance[c][i];
+            const double room = target.tier == FACET_TIER_STRICT ? 0 : 0x1p-24 * (double)(2 * count) * want;
+            expect(got - want <= room && want - got <= room, "sample %d: %a, and %a in %zu calls", i, got, want, count);
+        }
+    free_batch(&at_once);
+    free_batch(&one_by_one);
+}
+
+static void test_lights_in_passes(void)
+{
+    for (int i = 0; i < target_count(); i++) {
+        test("%s: 2, 3 and %d lights in one call as in a call each", target_words(target_at(i)), LIGHTS);
+        check_lights(2, target_at(i));
+        check_lights(3, target_at(i));
+        check_lights(LIGHTS, target_at(i));
+    }
+    skip_absent_targets();
+}
+
+static void test_empty(void)
+{
+    sample_batch b = random_batch(8, 7);
+    const facet_material m = rich_material();
+    const facet_plan plan = make_plan(&m, (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST });
+    size_t invalid = 5;
+    test("a batch of no samples writes nothing");
+    for (int c = 0; c < 3; c++) memset(b.batch.radiance[c], 0xa5, 8 * sizeof(float));
+    b.batch.count = 0;
+    b.batch.invalid = &invalid;
+    expect(facet_shade(&plan, &b.batch, NULL) == FACET_OK && invalid == 5, "refused or counted");
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < 8 * (int)sizeof(float); i++)
+            expect(((unsigned char *)b.batch.radiance[c])[i] == 0xa5, "written");
+    free_batch(&b);
+}
+
+/* ---- Threads -------------------------------------------------------------------------------------------------------- */
+
+enum { THREADS = 8, THREAD_SAMPLES = 301 };
+
+typedef struct {
+    const facet_plan *plan;
+    const facet_material *material;
+    const facet_batch *want;
+    facet_batch batch;           /* its own radiance, and shared or its own streams */
+    float radiance[3][THREAD_SAMPLES];
+    bool same;
+} thread_job;
+
+static void *run_thread(void *argument)
+{
+    thread_job *job = argument;
+    job->same = true;
+    for (int round = 0; round < 50; round++) {
+        facet_plan own;
+        memset(job->radiance, 0, sizeof job->radiance);
+        const facet_target target = facet_plan_target(job->plan);
+        job->same = job->same && facet_plan_init(&own, job->material, target, NULL) == FACET_OK
+            && !memcmp(&own, job->plan, sizeof own) && facet_shade(job->plan, &job->batch, NULL) == FACET_OK
+            && same_radiance(&job->batch, job->want);
+    }
+    return NULL;
+}
+
+static void check_threads(bool shared)
+{
+    static thread_job jobs[THREADS];
+    pthread_t threads[THREADS];
+    sample_batch batches[THREADS];
+    facet_material m = rich_material();
+    m.streams = ALL_STREAMS;
+    const facet_plan plan = make_plan(&m, (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST });
+    for (int i = 0; i < THREADS; i++) {
+        batches[i] = random_batch(THREAD_SAMPLES, shared ? 8 : 8 + (uint64_t)i);
+        facet_shade(&plan, &batches[i].batch, NULL);
+        jobs[i] = (thread_job){ .plan = &plan, .material = &m, .want = &batches[i].batch, .batch = batches[shared ? 0 : i].batch };
+        for (int c = 0; c < 3; c++) jobs[i].batch.radiance[c] = jobs[i].radiance[c];
+    }
+    int started = 0;
+    while (started < THREADS && !pthread_create(&threads[started], NULL, run_thread, &jobs[started])) started++;
+    expect(started == THREADS, "only %d threads", started);
+    for (int i = 0; i < started; i++) {
+        pthread_join(threads[i], NULL);
+        expect(jobs[i].same, "thread %d: other bytes", i);
+    }
+    for (int i = 0; i < THREADS; i++) free_batch(&batches[i]);
+}
+
+void suite_api(void)
+{
+    test_words();
+    test_build();
+    test_refusals();
+    test_plan_bytes();
+    test_foreign_plans();
+    test_descriptions();
+    test_material_sizes();
+    test_plan_sizes();
+    test_batch_sizes();
+    test_image_sizes();
+    test_lights_in_passes();
+    test_empty();
+    test("one plan in %d threads at once, the same batch", THREADS);
+    check_threads(true);
+    test("one plan in %d threads at once, batches of their own", THREADS);
+    check_threads(false);
+}

@@ -1,0 +1,97 @@
+#!/bin/sh
+# sh tests/cross.sh BUILD: the same results elsewhere: on other architectures (emulated), from other compilers and
+# optimisation levels, on older CPUs. tests/run.sh reads this file to run it among its own jobs.
+alone=
+if [ "${0##*/}" = cross.sh ]; then
+    cd "$(dirname "$0")/.." || exit 1
+    alone=1 build=${1:-build}
+    . tests/report.sh
+    jobs_begin
+fi
+suite=cross
+
+# compiles LABEL DIR WORD...: what `make WORD...` builds compiles without a warning.
+compiles() {
+    suite="$1 build" dir=$2
+    shift 2
+    check "no warnings" make_in "$dir" "$@"
+    [ $failures = 0 ]
+}
+
+# emulated LABEL TRIPLET EMULATOR PACKAGES: all suites, in a static program.
+emulated() {
+    label=$1 compiler=$2-gcc emulator=$3 dir=$build/cross/$1
+    if ! have "$emulator"; then
+        skip "$label" "no $emulator (package qemu-user)"
+    elif ! echo 'int main(void) { return 0; }' | "$compiler" -static -x c -o "$build/tests/$label" - 2>/dev/null; then
+        skip "$label" "no $compiler that links (packages $4)"
+    else
+        compiles "$label" "$dir" CC="$compiler" CFLAGS='-O2 -Werror' LDFLAGS=-static "$dir/facet-check" &&
+            program "$label" facet-check "$emulator" "$dir/facet-check" --slow
+    fi
+}
+
+# compiled COMPILER LEVEL: everything compiles without a warning; strict results are the committed ones.
+compiled() {
+    compiler=$1 level=$2
+    dir=$build/cross/$compiler$level
+    compiles "$compiler $level" "$dir" CC="$compiler" CFLAGS="$level -Werror" \
+        all "$dir/facet-check" "$dir/facet-demo" "$dir/facet-bench" &&
+        program "$compiler $level" facet-check "$dir/facet-check" --slow golden
+}
+
+# The scalar kernel over vectors of one lane, where a cast or a comparison meant for floats does not compile.
+linted() {
+    dir=$build/cross/lint-$1
+    compiles "lint $1" "$dir" CC="$1" CFLAGS='-O2 -Werror' HEADER.scalar=../tests/lint.h ARCHES=scalar "$dir/facet-check" &&
+        program "lint $1" facet-check "$dir/facet-check" --slow golden
+}
+
+# old_cpu MODEL ARCH...: runs these architectures and refuses the others, without an illegal instruction.
+old_cpu() {
+    model=$1 suite="$1 agreement"
+    shift
+    check "runs $*, no other" offers "$model" "$*"
+    program "$model" facet-check qemu-x86_64 -cpu "$model" "$build/facet-check" --slow agreement
+}
+
+offers() {
+    offered=$(qemu-x86_64 -cpu "$1" "$build/facet-demo" --list 2>/dev/null |
+        awk '$1 == "arch" && $2 != "best" && $3 == "available:" { print $2 }')
+    [ "$(echo $offered)" = "$2" ] || { echo "has $offered"; return 1; }
+}
+
+with_compiler() {
+    if have "$2"; then job "$@"; else job skip "$*" "no $2 (package $2)"; fi
+}
+
+cross_jobs() {
+    job emulated aarch64 aarch64-linux-gnu   qemu-aarch64 "gcc-aarch64-linux-gnu libc6-dev-arm64-cross"
+    job emulated armv7   arm-linux-gnueabihf qemu-arm     "gcc-arm-linux-gnueabihf libc6-dev-armhf-cross"
+    job emulated s390x   s390x-linux-gnu     qemu-s390x   "gcc-s390x-linux-gnu libc6-dev-s390x-cross"
+    job emulated riscv64 riscv64-linux-gnu   qemu-riscv64 "gcc-riscv64-linux-gnu libc6-dev-riscv64-cross"
+
+    for compiler in gcc-12 gcc-11 clang-14 clang-19; do
+        for level in -O0 -O1 -O2 -O3; do with_compiler compiled "$compiler" "$level"; done
+    done
+    with_compiler linted gcc-12
+    with_compiler linted clang-19
+
+    case $("$cc" -dumpmachine) in x86_64*) ;; *) job skip "old CPUs" "the machine is no x86_64"; return ;; esac
+    if ! have qemu-x86_64; then job skip "old CPUs" "no qemu-x86_64 (package qemu-user)"; return; fi
+    job old_cpu Conroe      scalar sse2
+    job old_cpu Penryn      scalar sse2 sse41
+    job old_cpu SandyBridge scalar sse2 sse41
+    job old_cpu Haswell     scalar sse2 sse41 avx2
+}
+
+if [ -n "${RUN:-}" ]; then
+    job skip "everything" "not under an emulator"
+else
+    cross_jobs
+fi
+
+if [ -n "$alone" ]; then
+    jobs_end
+    exit $((failures > 0))
+fi

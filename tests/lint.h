@@ -1,0 +1,45 @@
+/* The vector layer, one lane, for `make HEADER.scalar=../tests/lint.h ARCHES=scalar`: scalar.h's numbers in vectors of one.
+ * With scalar.h's own `typedef float vf`, a cast, a condition or a comparison compiles that on vectors means something else;
+ * here it is an error. What compiles gives the bytes of every other layer. */
+#ifndef TESTS_LINT_H
+#define TESTS_LINT_H
+
+#include <stdint.h>
+
+#define OP static inline __attribute__((always_inline, unused))
+
+typedef float vf __attribute__((vector_size(4)));
+typedef int32_t lanes_of_bits __attribute__((vector_size(4)));
+typedef struct { lanes_of_bits m; } vm;
+
+#define VF_LANES 1
+#define VF_INTERLEAVE 1
+
+OP vf vf_load(const float *p) { return (vf){ *p }; }
+OP void vf_store(float *p, vf a) { *p = a[0]; }
+OP vf vf_splat(float a) { return (vf){ a }; }
+
+OP vf vf_sqrt(vf a) { return (vf){ __builtin_sqrtf(a[0]) }; }
+OP vf vf_min(vf a, vf b) { return (vf){ a[0] < b[0] ? a[0] : b[0] }; }
+OP vf vf_max(vf a, vf b) { return (vf){ a[0] > b[0] ? a[0] : b[0] }; }
+OP vf vf_abs(vf a) { return (vf){ __builtin_fabsf(a[0]) }; }
+OP vf vf_flip(vf a, vf s) { return __builtin_signbit(s[0]) ? -a : a; }
+
+OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
+OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
+
+OP uint32_t bits_of(vf a) { return (uint32_t)((lanes_of_bits)a)[0]; }
+OP vf from_bits(uint32_t bits) { return (vf)(lanes_of_bits){ (int32_t)bits }; }
+OP vf vf_bits_max(vf a, vf b) { return bits_of(a) > bits_of(b) ? a : b; }
+OP vf vf_bits_minus(vf a, vf b) { return from_bits(bits_of(a) - bits_of(b)); }
+OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
+OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
+
+OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
+OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }
+OP vm vm_and(vm a, vm b) { return (vm){ a.m & b.m }; }
+OP vf vf_select(vm m, vf a, vf b) { return m.m[0] ? a : b; }
+OP vf vf_where(vm m, vf a) { return m.m[0] ? a : (vf){ 0.0f }; }
+OP uint32_t vm_bits(vm m) { return m.m[0] ? 1 : 0; }
+
+#endif

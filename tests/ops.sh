@@ -1,0 +1,51 @@
+#!/bin/sh
+# sh tests/ops.sh BUILD: compares the vector layers with tests/ops.def. Every header defines every operation of the list and no
+# other vf_ or vm_ function; what it has besides is its own, and the library does not use it. So an operation without a test
+# is not possible.
+cd "$(dirname "$0")/.." || exit 1
+build=${1:-build} suite=ops
+. tests/report.sh
+listed=$build/tests/ops.listed
+found=$build/tests/ops.found
+
+# Names that stand on one side alone, as "-name" where the list has them and "+name" where it has not.
+differences() {
+    comm -23 "$listed" "$found" | sed 's/^/-/'
+    comm -13 "$listed" "$found" | sed 's/^/+/'
+}
+
+listed_once() {
+    none "twice in tests/ops.def" "$(uniq -d "$listed")"
+    [ -s "$listed" ]
+}
+
+# A header, and the vector layer that it includes.
+header_files() {
+    echo "$1" $(sed -nE 's|^#include "(.*\.h)"|arch/\1|p' "$1")
+}
+
+# The functions of files.
+defined() {
+    sed -nE 's/^OP [^(]*[ *]([A-Za-z0-9_]*)\(.*/\1/p' "$@" | sort -u
+}
+
+defines_all() {
+    defined $(header_files "$1") | grep -E '^v[fm]_' >"$found"
+    none "- not here, + not in tests/ops.def" "$(differences)"
+    none "hidden from the comparison" "$(grep -nE '^(static|inline)|^OP [^(]*$|^#define v[fm]_' $(header_files "$1"))"
+}
+
+uses_listed() {
+    cat src/*.tmpl.h src/*.c | grep -oE '\<v[fm]_[a-z0-9_]+' | sort -u >"$found"
+    none "not in tests/ops.def" "$(comm -13 "$listed" "$found")"
+    cat src/*.tmpl.h src/*.c | grep -oE '\<[A-Za-z0-9_]+\(' | tr -d '(' | sort -u >"$found"
+    none "a header's own" "$(defined arch/*.h tests/lint.h | comm -23 - "$listed" | comm -12 - "$found")"
+}
+
+sed -nE 's/^(OPERATION|MOVE|FUSABLE)\((v[fm]_[a-z0-9_]*),.*/\2/p' tests/ops.def | sort >"$listed"
+check "tests/ops.def lists every operation once" listed_once
+for header in arch/*.h tests/lint.h; do
+    [ "$header" = arch/environment.h ] || check "$header defines the operations of tests/ops.def" defines_all "$header"
+done
+check "src uses operations of tests/ops.def alone" uses_listed
+[ $failures = 0 ]

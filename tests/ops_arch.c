@@ -1,0 +1,61 @@
+/* One architecture's vector operations in one tier, as functions. The Makefile compiles this file once for each, with
+ * FACET_ARCH_HEADER and FACET_STRICT as for a kernel, and OPS_TABLE: the table's name. */
+#include FACET_ARCH_HEADER
+
+#include "ops.h"
+
+extern const ops_table OPS_TABLE;
+
+#define A vf_load(a + i)
+#define B vf_load(b + i)
+#define C vf_load(c + i)
+#define MASK(x) vf_lt(vf_splat(0.0f), x)
+
+OP void store_bits(float *out, uint32_t bits)
+{
+    const uint32_t beyond = VF_LANES < 32 ? bits >> VF_LANES : 0;
+    for (int lane = 0; lane < VF_LANES; lane++) out[lane] = beyond ? OPS_BROKEN : (float)(bits >> lane & 1);
+}
+
+OP void store_splats(float *out, const float *a)
+{
+    for (int lane = 0; lane < VF_LANES; lane++) {
+        float all[VF_LANES];
+        vf_store(all, vf_splat(a[lane]));
+        out[lane] = all[lane];
+        for (int other = 0; other < VF_LANES; other++)
+            if (__builtin_memcmp(&all[other], &all[lane], sizeof(float))) out[lane] = OPS_BROKEN;
+    }
+}
+
+/* One vector of an operation, by shape. */
+#define APPLY_UNARY(name)   vf_store(out + i, name(A))
+#define APPLY_BINARY(name)  vf_store(out + i, name(A, B))
+#define APPLY_TERNARY(name) vf_store(out + i, name(A, B, C))
+#define APPLY_COMPARE(name) store_bits(out + i, vm_bits(name(A, B)))
+#define APPLY_MASKS(name)   store_bits(out + i, vm_bits(name(MASK(A), MASK(B))))
+#define APPLY_BITS(name)    store_bits(out + i, name(MASK(A)))
+#define APPLY_SIGNS(name)   store_bits(out + i, name(A))
+#define APPLY_SELECT(name)  vf_store(out + i, name(MASK(A), B, C))
+#define APPLY_WHERE(name)   vf_store(out + i, name(MASK(A), B))
+#define APPLY_SPLAT(name)   store_splats(out + i, a + i)
+#define APPLY_LOAD(name)    vf_store(out + i, name(a + i))
+#define APPLY_STORE(name)   name(out + i, A)
+
+#define FUNCTION(name, apply)                                                                                         \
+    static void apply_##name(const float *a, const float *b, const float *c, float *out, size_t count)               \
+    {                                                                                                                \
+        (void)b, (void)c;                                                                                            \
+        for (size_t i = 0; i < count; i += VF_LANES) apply;                                                          \
+    }
+#define OPERATION(name, shape, meaning) FUNCTION(name, APPLY_##shape(name))
+#define OPERATOR(name, sign)            FUNCTION(name, vf_store(out + i, A sign B))
+#include "ops.def"
+
+const ops_table OPS_TABLE = {
+    .lanes = VF_LANES,
+    .operations = {
+#define OPERATION(name, ...) [OPERATION_##name] = apply_##name,
+#include "ops.def"
+    },
+};

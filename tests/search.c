@@ -1,0 +1,279 @@
+/* Each goal has slots; the worst random samples fill them, and then each climbs on its own: of a slot's mutants, the
+ * worst replaces it. */
+#include "search.h"
+
+#include "samples.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+enum { BATCH = MOST_MEASURED, SLOTS = 16, MUTANTS = BATCH / (GOALS * SLOTS) };
+
+typedef struct {
+    const kernel_case *kernel;
+    const error_bound *bound;
+    kernel_set set;
+    test_random random;
+    witness slots[GOALS][SLOTS];
+} search;
+
+/* ---- Measuring --------------------------------------------------------------------------------------------------- */
+
+kernel_set kernels_of(const kernel_case *kernel, facet_tier tier, float f90, bool best_alone)
+{
+    kernel_set set = { .material = kernel->material };
+    set.material.streams = kernel->streams;
+    set.material.fresnel.f90 = f90;
+    for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
+        if (!facet_has(FACET_KIND_ARCH, arch) || (best_alone && arch != (int)facet_arch_best())) continue;
+        const facet_target target = { (facet_arch)arch, tier };
+        facet_error error;
+        const bool made = facet_plan_init(&set.plans[set.count], &set.material, target, &error) == FACET_OK;
+        if (expect(made, "no plan: %s", error.field)) set.arches[set.count++] = target.arch;
+    }
+    return set;
+}
+
+void measure(const kernel_set *set, const sample *samples, int count, measurement *results)
+{
+    double want[MOST_MEASURED][3], magnitude[MOST_MEASURED][3];
+    sample_batch b = batch_of(samples, count);
+    for (int i = 0; i < count; i++) {
+        results[i] = (measurement){ .error = -1 };
+        reference_terms(&set->material, &samples[i], want[i], magnitude[i]);
+    }
+    for (int k = 0; k < set->count; k++) {
+        facet_shade(&set->plans[k], &b.batch, NULL);
+        for (int i = 0; i < count; i++)
+            for (int c = 0; c < 3; c++) {
+                const float got = b.batch.radiance[c][i];
+                const double error = error_over_magnitude(got, want[i][c], magnitude[i][c], samples[i].irradiance[c]);
+                if (error > results[i].error) results[i] = (measurement){ error, want[i][c], got, set->arches[k], c };
+            }
+    }
+    free_batch(&b);
+}
+
+/* ---- Slots ------------------------------------------------------------------------------------------------------- */
+
+/* The channel that was worst, in all three. */
+static witness witness_of(const sample *s, const measurement *m, double reached)
+{
+    witness w = { *s, m->arch, m->got, m->want, reached };
+    for (int c = 0; c < 3; c++) {
+        w.s.albedo[c] = s->albedo[m->channel];
+        w.s.f0[c] = s->f0[m->channel];
+        w.s.irradiance[c] = s->irradiance[m->channel];
+    }
+    return w;
+}
+
+static void offer(witness *slot, const sample *s, const measurement *m, double reached)
+{
+    if (reached > slot->reached) *slot = witness_of(s, m, reached);
+}
+
+static witness *least_of(witness *slots)
+{
+    witness *least = slots;
+    for (int i = 1; i < SLOTS; i++)
+        if (slots[i].reached < least->reached) least = &slots[i];
+    return least;
+}
+
+/* Measures samples and offers each to the slots of its goals: to those of number `own[i]`, or where `own` is NULL to
+ * the least of them. */
+static void try_samples(search *h, const sample *samples, int count, const int *own)
+{
+    measurement results[BATCH];
+    measure(&h->set, samples, count, results);
+    for (int i = 0; i < count; i++) {
+        const cosines c = reference_cosines(&samples[i]);
+        if (!in_domain(&samples[i], c)) continue;
+        int goal;
+        const double bound = bound_at(h->bound, &samples[i], c, &goal), plain = h->bound->limit[GOAL_PLAIN];
+        witness *slots = h->slots[goal];
+        offer(own ? &slots[own[i]] : least_of(slots), &samples[i], &results[i], results[i].error / bound);
+        slots = h->slots[GOAL_PLAIN];
+        if (in_plain_domain(&samples[i], c))
+            offer(own ? &slots[own[i]] : least_of(slots), &samples[i], &results[i], results[i].error / plain);
+    }
+}
+
+/* ---- Mutants ----------------------------------------------------------------------------------------------------- */
+
+static double signed_log(test_random *r, double least, double most)
+{
+    const double size = exp(log(least) + (log(most) - log(least)) * random_unit(r));
+    return random_u64(r) & 1 ? size : -size;
+}
+
+static float nudge(test_random *r, float x)
+{
+    const int steps = 1 + (int)(random_u64(r) & 3);
+    const float towards = random_u64(r) & 1 ? INFINITY : -INFINITY;
+    for (int i = 0; i < steps; i++) x = nextafterf(x, towards);
+    return x;
+}
+
+static void store_unit(float *to, const double *a)
+{
+    const double scale = 1 / sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    for (int c = 0; c < 3; c++) to[c] = (float)(a[c] * scale);
+}
+
+static void move_vector(test_random *r, float *vector)
+{
+    double moved[3];
+    const double step = signed_log(r, 1e-8, 0.3);
+    for (int c = 0; c < 3; c++) moved[c] = vector[c] + step * (2 * random_unit(r) - 1);
+    store_unit(vector, moved);
+}
+
+/* The same geometry in another frame: other roundings. */
+static void turn_all(test_random *r, sample *s)
+{
+    const double angle = signed_log(r, 1e-7, PI);
+    const int x = (int)(random_u64(r) % 3), y = (x + 1) % 3;
+    float *const vectors[] = { s->n, s->v, s->l };
+    for (int i = 0; i < 3; i++) {
+        double turned[3] = { vectors[i][0], vectors[i][1], vectors[i][2] };
+        turned[x] = cos(angle) * vectors[i][x] - sin(angle) * vectors[i][y];
+        turned[y] = sin(angle) * vectors[i][x] + cos(angle) * vectors[i][y];
+        store_unit(vectors[i], turned);
+    }
+}
+
+static float mutate_number(test_random *r, float x, float least, float most)
+{
+    const float mutant = random_u64(r) & 1 ? nudge(r, x) : (float)(x * exp(signed_log(r, 1e-7, 1)));
+    return fminf(fmaxf(mutant, least), most);
+}
+
+static sample mutate(test_random *r, const kernel_case *kernel, sample s)
+{
+    float *const vectors[] = { s.n, s.v, s.l };
+    float *const vector = vectors[random_u64(r) % 3];
+    switch (random_u64(r) % 10) {
+    case 0: case 1: case 2: {
+        const uint64_t component = random_u64(r) % 3;
+        vector[component] = nudge(r, vector[component]);
+        break;
+    }
+    case 3: case 4: move_vector(r, vector); break;
+    case 5: case 6: turn_all(r, &s); break;
+    case 7: s.alpha = mutate_number(r, s.alpha, FACET_ALPHA_FLOOR, 1); break;
+    case 8: s.sigma = mutate_number(r, s.sigma, 0, kernel->sigma_max); break;
+    case 9:
+        for (int c = 0; c < 3; c++) {
+            s.albedo[c] = mutate_number(r, s.albedo[c], 0, 1);
+            s.f0[c] = mutate_number(r, s.f0[c], 0, 1);
+            s.irradiance[c] = mutate_number(r, s.irradiance[c], 0, 1e6f);
+        }
+    }
+    return s;
+}
+
+static void climb(search *h)
+{
+    sample mutants[BATCH];
+    int own[BATCH], count = 0;
+    for (int goal = 0; goal < GOALS; goal++)
+        for (int slot = 0; slot < SLOTS; slot++)
+            for (int i = 0; i < MUTANTS && h->slots[goal][slot].reached > 0; i++) {
+                own[count] = slot;
+                mutants[count] = mutate(&h->random, h->kernel, h->slots[goal][slot].s);
+                if (i & 1) mutants[count] = mutate(&h->random, h->kernel, mutants[count]);
+                count++;
+            }
+    try_samples(h, mutants, count, own);
+}
+
+/* ---- Random samples and the lattice ------------------------------------------------------------------------------ */
+
+static void try_random(search *h, int batch)
+{
+    sample samples[BATCH];
+    for (int i = 0; i < BATCH; i++)
+        samples[i] = random_sample(&h->random, (batch + i) % SAMPLES_KINDS, FACET_ALPHA_FLOOR, h->kernel->sigma_max);
+    try_samples(h, samples, BATCH, NULL);
+}
+
+static float edge_within(int index, float least, float most)
+{
+    return fminf(fmaxf(edge_values[index % edge_count], least), most);
+}
+
+/* n along z; l and v at cosines that are edges, opposite, at right angles or side by side; every number an edge. */
+static sample lattice_sample(int index, double nl, double nv, const kernel_case *kernel)
+{
+    static const float across[][2] = { { 1, 0 }, { -1, 0 }, { 0, 1 } };
+    const float *azimuth = across[index % 3];
+    const double sin_l = sqrt(fmax(0, 1 - nl * nl)), sin_v = sqrt(fmax(0, 1 - nv * nv));
+    sample s = { .n = { 0, 0, 1 }, .v = { (float)sin_v, 0, (float)nv } };
+    s.l[0] = (float)(sin_l * azimuth[0]), s.l[1] = (float)(sin_l * azimuth[1]), s.l[2] = (float)nl;
+    s.alpha = edge_within(index, FACET_ALPHA_FLOOR, 1);
+    s.sigma = edge_within(index / 2, 0, kernel->sigma_max);
+    for (int c = 0; c < 3; c++) {
+        s.albedo[c] = edge_within(index + 5 * c, 0, 1);
+        s.f0[c] = edge_within(index / 3 + 7 * c, 0, 1);
+        s.irradiance[c] = edge_within(index / 5 + 11 * c, 0, 1e6f);
+    }
+    return s;
+}
+
+static void try_lattice(search *h, int stride)
+{
+    sample samples[BATCH];
+    int count = 0, number = 0;
+    for (int i = 0; i < edge_count; i++)
+        for (int k = 0; k < edge_count; k++) {
+            const float nl = edge_values[i], nv = edge_values[k];
+            for (int turn = 0; nl > 0 && nl <= 1 && nv > 0 && nv <= 1 && turn < edge_count; turn++) {
+                if (number++ % stride) continue;
+                samples[count++] = lattice_sample(edge_count * i + k + turn, nl, nv, h->kernel);
+                if (count < BATCH) continue;
+                try_samples(h, samples, count, NULL);
+                count = 0;
+            }
+        }
+    try_samples(h, samples, count, NULL);
+}
+
+/* ---- The search -------------------------------------------------------------------------------------------------- */
+
+static void keep_worst(const search *h, witness found[GOALS])
+{
+    for (int goal = 0; goal < GOALS; goal++)
+        for (int i = 0; i < SLOTS; i++)
+            if (h->slots[goal][i].reached > found[goal].reached) found[goal] = h->slots[goal][i];
+}
+
+/* What is known to be bad for any kernel. */
+static void try_table(search *h)
+{
+    const accuracy_row *row;
+    for (int i = 0; (row = accuracy_at(i)); i++)
+        for (int goal = 0; goal < GOALS; goal++)
+            if (row->worst[goal].reached > 0) try_samples(h, &row->worst[goal].s, 1, NULL);
+}
+
+void search_worst(const kernel_case *kernel, facet_tier tier, const error_bound *bound, search_effort effort,
+                  witness found[GOALS])
+{
+    search h = { .kernel = kernel, .bound = bound, .random = { 1 } };
+    h.set = kernels_of(kernel, tier, 0, tier == FACET_TIER_STRICT);
+    memset(found, 0, GOALS * sizeof found[0]);
+    for (int start = 0; start < effort.starts; start++) {
+        memset(h.slots, 0, sizeof h.slots);
+        if (start == 0) {
+            try_table(&h);
+            try_lattice(&h, effort.stride);
+        }
+        for (int i = 0; i < effort.batches; i++) try_random(&h, i);
+        for (int i = 0; i < effort.generations; i++) climb(&h);
+        keep_worst(&h, found);
+    }
+}

@@ -1,0 +1,51 @@
+/* What a stability test is run on, how it shades there, and what it may expect. Whatever a test is about, each radiance
+ * that it sees must be finite and not below +0. */
+#ifndef SUBJECT_H
+#define SUBJECT_H
+
+#include "bounds.h"
+#include "samples.h"
+
+typedef struct {
+    facet_target target;
+    const kernel_case *kernel;
+    const error_bound *bound;
+} subject;
+
+/* A test that is run on every subject. */
+typedef struct { const char *name; void (*run)(const subject *); } trap;
+
+/* What a call brings beside the samples; zero is the plain case. */
+typedef struct {
+    float emission[3], ambient[3];
+    const float *visibility;
+    const uint8_t *coverage;
+    uint32_t flags;
+} extras;
+
+typedef float rgb[3];
+
+/* Shades at most MOST samples, with the kernel's models or with a material; `x` may be NULL. Returns how many samples
+ * were counted as invalid. With FACET_ACCUMULATE, onto what is in `out`. Does so twice, alone and in the middle of
+ * other samples, and expects the same bytes. */
+enum { MOST = 64 };
+size_t shade(const subject *u, const extras *x, const sample *s, int count, rgb *out);
+size_t shade_material(const subject *u, const facet_material *m, const extras *x, const sample *s, int count, rgb *out);
+
+/* The kernel's models, with all that they read in streams. */
+facet_material streaming_material(const subject *u);
+
+/* Generic samples, about which nothing is special; a sample with these vectors. */
+void ordinary(const subject *u, sample *s, int count);
+sample with_vectors(const float *n, const float *v, const float *l);
+void negate(float *vector);
+
+/* The same bytes; all channels this value. */
+void expect_same(const subject *u, const rgb *a, const rgb *b, int count, const char *what);
+void expect_all(const subject *u, const rgb *radiance, int count, float value);
+
+/* Shades, and compares with the reference. `exact`: the cosines are sums without rounding, so that a small nl costs
+ * nothing. */
+void expect_reference(const subject *u, const sample *s, int count, bool exact);
+
+#endif

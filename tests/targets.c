@@ -1,0 +1,45 @@
+#include "targets.h"
+
+#include "harness.h"
+
+#include <stdio.h>
+
+enum { MOST_TARGETS = 64 };
+static facet_target targets[MOST_TARGETS];
+static int targets_found;
+
+static void find_targets(void)
+{
+    for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++)
+        for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++)
+            if (facet_has(FACET_KIND_ARCH, arch) && facet_has(FACET_KIND_TIER, tier) && targets_found < MOST_TARGETS)
+                targets[targets_found++] = (facet_target){ (facet_arch)arch, (facet_tier)tier };
+}
+
+int target_count(void)
+{
+    if (!targets_found) find_targets();
+    return targets_found;
+}
+
+facet_target target_at(int index)
+{
+    return index >= 0 && index < target_count() ? targets[index] : (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST };
+}
+
+const char *target_words(facet_target target)
+{
+    static char words[64];
+    snprintf(words, sizeof words, "%s %s", facet_word(FACET_KIND_ARCH, (int)target.arch),
+             facet_word(FACET_KIND_TIER, (int)target.tier));
+    return words;
+}
+
+void skip_absent_targets(void)
+{
+    for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
+        if (!facet_arch_lanes((facet_arch)arch) || facet_has(FACET_KIND_ARCH, arch)) continue;
+        test("%s", facet_word(FACET_KIND_ARCH, arch));
+        skip("this CPU lacks it");
+    }
+}

@@ -1,0 +1,16 @@
+/* The targets that tests walk: every architecture and tier that this build holds and this CPU runs. */
+#ifndef TARGETS_H
+#define TARGETS_H
+
+#include "facet.h"
+
+int target_count(void);
+facet_target target_at(int index);
+
+/* "avx2 strict". A constant string until the next call. */
+const char *target_words(facet_target target);
+
+/* A skipped test for every architecture that this build holds and this CPU lacks. */
+void skip_absent_targets(void);
+
+#endif
