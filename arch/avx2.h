@@ -12,7 +12,7 @@ typedef float vf_memory __attribute__((vector_size(32), aligned(4), may_alias));
 typedef struct { vf m; } vm;
 
 #define VF_LANES 8
-#define VF_INTERLEAVE 1
+#define VF_INTERLEAVE 2
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }

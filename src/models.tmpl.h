@@ -9,7 +9,7 @@
 
 typedef struct { vf x, y, z; } vf3;
 
-#define TINY    FLT_MIN              /* stands in for a denominator of 0; no sane sample comes near it */
+#define TINY    FLT_MIN              /* the least denominator */
 
 OP vf splat(float a) { return vf_splat(a); }
 OP vf3 splat3(const float *a) { return (vf3){ vf_splat(a[0]), vf_splat(a[1]), vf_splat(a[2]) }; }
@@ -108,7 +108,7 @@ OP vf distribution_none(surface s, incidence i) { (void)s, (void)i; return splat
  * From the vectors, without 1 - nh^2: q = alpha hh/(|n x w|^2 + alpha^2 (n.w)^2), D = q^2/pi. Where w = 0, D = 0. */
 OP vf distribution_ggx(surface s, incidence i)
 {
-    vf q = s.alpha * i.hh / vf_max(vf_mad(s.alpha2, i.nw2, i.nxw2), splat(TINY));
+    vf q = s.alpha * i.hh / vf_max(splat(TINY), vf_mad(s.alpha2, i.nw2, i.nxw2));
     return square(q) * INV_PI;
 }
 
@@ -141,7 +141,8 @@ OP vf3 fresnel_constant(surface s, incidence i) { (void)i; return s.f0; }
 /* Schlick 1994: F = f0 + (f90 - f0)(1 - vh)^5. */
 OP vf3 fresnel_schlick(surface s, incidence i)
 {
-    vf c5 = pow5(not_negative(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f)))), a = 1.0f - c5, b = s.f90 * c5;
+    vf c = vf_abs(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f)));      /* 1 - vh, below 0 by rounding alone */
+    vf c5 = pow5(c), a = 1.0f - c5, b = s.f90 * c5;
     return (vf3){ vf_mad(s.f0.x, a, b), vf_mad(s.f0.y, a, b), vf_mad(s.f0.z, a, b) };
 }
 

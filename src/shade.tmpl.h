@@ -30,7 +30,7 @@ typedef struct {
     facet_fresnel fresnel;
     uint32_t needed;         /* FACET_STREAM_*: of the material's, what is read */
     bool coupled, view, two_sided;
-    bool plain;              /* a whole block of good samples, one light without streams, and nothing else added */
+    bool plain;              /* one light without streams, nothing else added, and nobody counts what is invalid */
 } features;
 
 /* ---- A group ----------------------------------------------------------------------------------------------------
@@ -150,20 +150,14 @@ OP void load_irradiance(group *g, features x, const job *j, const facet_light *l
     }
 }
 
-/* nl and nv, where the light and the eye are on the normal's side; nl = 0 elsewhere. */
+/* nl and nv, where the light and the eye are on the normal's side; nl = 0 elsewhere, and NaN where nl or nv is not finite. */
 OP void face(const group *g, features x, vf *nl, incidence *t)
 {
-    vf nv[K];
-    EACH(k) nv[k] = g->nv[k];
-    if (x.two_sided)
-        EACH(k) {
-            nl[k] = vf_flip(nl[k], nv[k]);
-            nv[k] = vf_abs(nv[k]);
-        }
+    if (x.two_sided) EACH(k) nl[k] = vf_flip(nl[k], g->nv[k]);
     EACH(k) {
-        vm seen = vm_and(vf_lt(splat(0.0f), nl[k]), vf_lt(splat(0.0f), nv[k]));
-        t[k].nl = vf_where(seen, nl[k]);
-        t[k].nv = vf_max(nv[k], splat(TINY));
+        vf nv = x.two_sided ? vf_abs(g->nv[k]) : g->nv[k];
+        t[k].nl = vf_where(vf_lt(splat(0.0f), nv), vf_max(splat(0.0f), nl[k])) + (nv - nv);
+        t[k].nv = vf_max(splat(TINY), nv);
     }
 }
 
@@ -289,13 +283,19 @@ OP uint32_t add_constants(group *g, const job *j, float *const *radiance)
     return invalid;
 }
 
-/* Writes the group. */
-OP void store(const group *g, float *const *radiance)
+/* Whether a component of the group is negative, infinite or NaN. */
+OP bool out_of_range(const group *g)
+{
+    uint32_t odd = 0;
+    EACH(k) odd |= vf_signs(above(largest(g->sum[k]), FLT_MAX));
+    return __builtin_expect(odd != 0, 0);
+}
+
+OP void store(const group *g, bool clamped, float *const *radiance)
 {
     EACH(k) {
         vf3 out = g->sum[k];
-        if (__builtin_expect(vf_signs(above(largest(out), FLT_MAX)) != 0, 0))
-            out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
+        if (clamped) out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
         vf_store(radiance[0] + k * VF_LANES, out.x);
         vf_store(radiance[1] + k * VF_LANES, out.y);
         vf_store(radiance[2] + k * VF_LANES, out.z);
@@ -317,18 +317,22 @@ typedef struct {
 OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 
 /* Whether a sample of the group may need mending; errs on the side of yes: several components' bits together can look like
- * an infinity, but not while all are of magnitude below 2. Each check leaves a sign where something is wrong. */
+ * an infinity, but not while all are of magnitude below 2. Each check leaves a sign where something is wrong. A plain batch
+ * needs no look at its vectors: what is not finite shows in the result, and a zero normal's result is 0. */
 OP bool needs_mending(const group *g, features x, const plan_fields *p)
 {
     uint32_t odd = 0;
     EACH(k) {
-        vf n = any_bits(LOAD3(g, NORMAL, k)), finite = n, wrong = below(vf_abs(n), FLT_TRUE_MIN);
-        if (x.view) finite = vf_or(finite, any_bits(LOAD3(g, VIEW, k)));
-        finite = vf_abs(finite);
-        if (x.needed & FACET_STREAM_ALBEDO) finite = vf_or(finite, any_bits(LOAD3(g, ALBEDO, k)));
-        wrong = vf_or(wrong, above(finite, FLT_MAX));
+        vf wrong = splat(0.0f), unit = splat(0.0f);
+        if (!x.plain) {
+            vf n = vf_abs(any_bits(LOAD3(g, NORMAL, k))), v = x.view ? vf_abs(any_bits(LOAD3(g, VIEW, k))) : n;
+            wrong = vf_or(below(n, FLT_TRUE_MIN), above(vf_or(n, v), FLT_MAX));
+        }
+        if (x.needed & FACET_STREAM_ALBEDO) {
+            vf albedo = any_bits(LOAD3(g, ALBEDO, k));
+            wrong = vf_or(wrong, x.plain ? albedo : above(albedo, FLT_MAX));
+        }
         if (x.needed & FACET_STREAM_SIGMA) wrong = vf_or(wrong, above(LOAD(g, SIGMA, k), p->sigma_max));
-        vf unit = splat(0.0f);
         if (x.needed & FACET_STREAM_F0) unit = largest(LOAD3(g, F0, k));
         if (x.needed & FACET_STREAM_ALPHA) {
             vf alpha = LOAD(g, ALPHA, k);
@@ -356,7 +360,9 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
         const size_t lights = x.plain ? 1 : j->light_count;
         for (size_t light = 0; light < lights; light++) add_light(&g, x, j, &j->lights[light], b->i + at);
         if (!x.plain) *invalid |= (uint64_t)add_constants(&g, j, radiance) << at;
-        store(&g, radiance);
+        const bool odd = out_of_range(&g);
+        if (x.plain && odd && !b->mended) break;
+        store(&g, odd, radiance);
     }
     return at;
 }
@@ -400,7 +406,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
 static block_shader *choose_shader(const job *j)
 {
     const plan_fields *p = j->plan;
-    const bool plain = j->light_count == 1 && !j->check_lights && !j->constant_radiance
+    const bool plain = j->light_count == 1 && !j->check_lights && !j->constant_radiance && !j->invalid
                        && j->streams & FACET_STREAM_VIEW && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
     if (!plain) return shade_any;
 #define FACET_SPECIAL(diffuse_, distribution_, masking, fresnel_, coupled_)                                           \
