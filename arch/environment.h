@@ -1,7 +1,7 @@
 /* The floating-point environment that results are defined in: round to nearest, subnormals kept, traps masked.
  * environment_enter sets it and returns the caller's; environment_leave gives that back, sticky flags included. Both
  * write the register only where it differs. Both are compiler barriers: floating-point arithmetic belongs in a function
- * that is not inlined beside them. On a machine without a row here they do nothing, and the caller's environment counts. */
+ * that is not inlined beside them. On a machine without a row here they do nothing: the caller's environment counts. */
 #ifndef FACET_ARCH_ENVIRONMENT_H
 #define FACET_ARCH_ENVIRONMENT_H
 

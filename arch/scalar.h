@@ -37,8 +37,8 @@ OP vf vf_mad(vf a, vf b, vf c) { return a * b + c; }
 OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
 #endif
 
-/* On the bits: the one of a and b whose bits, as an unsigned number, are larger (negatives, infinities and NaN beat all);
- * the bits of a less those of b; the bits of both. vf_signs: bit k is the sign of lane k. */
+/* On the bits: the one of a and b whose bits, as an unsigned number, are larger (negatives, infinities and NaN beat
+ * all); the bits of a less those of b; the bits of both. vf_signs: bit k is the sign of lane k. */
 typedef union { float f; uint32_t u; } vf_bits;
 OP uint32_t vf_bits_of(vf a) { return ((vf_bits){ .f = a }).u; }
 OP vf vf_from_bits(uint32_t u) { return ((vf_bits){ .u = u }).f; }

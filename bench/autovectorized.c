@@ -1,5 +1,5 @@
 /* A baseline: the same function as the library's, branch-free in plain C over arrays, for a compiler's vectoriser at
- * -O3 -ffast-math -march=native. The Makefile compiles it by each compiler at each vector width, with TILE_SHADER as the
+ * -O3 -ffast-math -march=native. The Makefile compiles it by each compiler at each vector width; TILE_SHADER is the
  * function's name. */
 #include "tile.h"
 

@@ -18,7 +18,7 @@ typedef struct {
     double error;                /* worst relative, against the textbook's function in double */
 } contender;
 
-static float streams[STREAMS][COUNT + 64];
+static _Alignas(64) float streams[STREAMS][COUNT + 64];
 static contender contenders[MAX_CONTENDERS];
 static int contender_count;
 
@@ -49,7 +49,8 @@ static tile make_tile(void)
     float (*s)[COUNT + 64] = streams;
     tile t = { .count = COUNT, .normal = { s[0], s[1], s[2] }, .view = { s[3], s[4], s[5] },
                .albedo = { s[6], s[7], s[8] }, .sigma = s[9], .alpha = s[10], .f0 = { s[11], s[12], s[13] },
-               .radiance = { s[14], s[15], s[16] }, .light = { 0.36f, 0.48f, 0.8f }, .irradiance = { 3.0f, 2.5f, 2.0f } };
+               .radiance = { s[14], s[15], s[16] },
+               .light = { 0.36f, 0.48f, 0.8f }, .irradiance = { 3.0f, 2.5f, 2.0f } };
     for (int i = 0; i < COUNT; i++) {
         random_direction(0.7, &s[0][i], &s[1][i], &s[2][i]);
         random_direction(0.7, &s[3][i], &s[4][i], &s[5][i]);
@@ -74,8 +75,10 @@ static void add_library(void)
     for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++)
         for (int arch = 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
             contender *c = &contenders[contender_count];
-            if (facet_plan_init(&c->plan, &material, (facet_target){ (facet_arch)arch, (facet_tier)tier }, NULL)) continue;
-            snprintf(c->name, sizeof c->name, "facet %s %s", facet_word(FACET_KIND_ARCH, arch), facet_word(FACET_KIND_TIER, tier));
+            const facet_target target = { (facet_arch)arch, (facet_tier)tier };
+            if (facet_plan_init(&c->plan, &material, target, NULL)) continue;
+            snprintf(c->name, sizeof c->name, "facet %s %s", facet_word(FACET_KIND_ARCH, arch),
+                     facet_word(FACET_KIND_TIER, tier));
             contender_count++;
         }
 }
@@ -172,7 +175,8 @@ int main(void)
     for (int i = 0; i < contender_count; i++) {
         const contender *c = &contenders[i];
         printf("%-22s %9.3f %9.1e", c->name, median_seconds(c) * 1e9 / (double)COUNT, c->error);
-        for (int b = 0; b < baselines; b++) printf("  %*.2f", (int)strlen(contenders[b].name) + 2, ratio(c, &contenders[b]));
+        for (int b = 0; b < baselines; b++)
+            printf("  %*.2f", (int)strlen(contenders[b].name) + 2, ratio(c, &contenders[b]));
         printf("\n");
     }
     return 0;

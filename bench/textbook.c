@@ -1,5 +1,5 @@
-/* A baseline: the shader of the lecture slides, transcribed step by step: every vector normalised, every angle taken with
- * acosf, and what follows from the angles with sinf, tanf and powf. Compiled at -O2, as its readers would. */
+/* A baseline: the shader of the lecture slides, transcribed step by step: every vector normalised, every angle taken
+ * with acosf, and what follows from the angles with sinf, tanf and powf. Compiled at -O2, as its readers would. */
 #include "tile.h"
 
 #include <math.h>

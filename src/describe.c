@@ -90,7 +90,7 @@ static void describe_diffuse(writer *w, const plan_fields *p)
     if (p->needed & FACET_STREAM_SIGMA) {
         put_parameter(w, p, FACET_STREAM_SIGMA, ", sigma", &p->sigma, 1);
         if (p->promised & FACET_STREAM_SIGMA) put(w, ", A and B per sample");
-        else put_numbers(w, ", A/pi and B/pi", p->terms, 2);
+        else put_numbers(w, ", A and B", (float[]){ p->terms[0] / INV_PI, p->terms[1] / INV_PI }, 2);
     }
     put(w, "\n");
 }

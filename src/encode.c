@@ -76,7 +76,8 @@ static facet_status check(const facet_image *image, facet_error *error)
         if (!image->radiance[c]) return refuse(error, FACET_ERROR_NULL, "radiance", c);
     if (!image->pixels) return refuse(error, FACET_ERROR_NULL, "pixels", -1);
     if (!(image->exposure >= 0.0f && finite(image->exposure))) return refuse(error, FACET_ERROR_VALUE, "exposure", -1);
-    if ((unsigned)image->opacity_from > FACET_OPACITY_COVERAGE) return refuse(error, FACET_ERROR_ENUM, "opacity_from", -1);
+    if ((unsigned)image->opacity_from > FACET_OPACITY_COVERAGE)
+        return refuse(error, FACET_ERROR_ENUM, "opacity_from", -1);
     if (image->opacity_from == FACET_OPACITY_STREAM && !image->opacity)
         return refuse(error, FACET_ERROR_NULL, "opacity", -1);
     if (image->opacity_from == FACET_OPACITY_COVERAGE && !image->coverage)

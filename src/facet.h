@@ -48,7 +48,7 @@ typedef enum facet_status {
     FACET_ERROR_VALUE,   /* a number is NaN, infinite or outside its domain */
     FACET_ERROR_ENUM,    /* no such enumerator, or an unknown flag bit */
     FACET_ERROR_MODEL,   /* this build lacks the model, or the models do not go together */
-    FACET_ERROR_ARCH,    /* the architecture is not in this build or not on this CPU, or the tier is not in this build */
+    FACET_ERROR_ARCH,    /* the architecture or tier is not in this build, or not on this CPU */
     FACET_ERROR_PLAN,    /* not a plan, or one of another version of the library */
     FACET_ERROR_SIZE     /* a struct of a newer header uses what this library does not know */
 } facet_status;
@@ -151,8 +151,8 @@ enum {
 /* A material: models and their parameters. Numbers must be finite; "negative is 0" and clamps hold alike for a number
  * here and for a stream's value.
  *   diffuse.albedo       [0, 1] per channel, negative is 0; above 1 is used as it is.
- *   diffuse.sigma        Oren-Nayar: standard deviation of the facets' slope angle, radians, [0, pi/2]. Fujii: r, [0, 1].
- *                        Outside is refused here, clamped in a stream. At 0 these models are Lambert, exactly.
+ *   diffuse.sigma        Oren-Nayar: standard deviation of the facets' slope angle, radians, [0, pi/2]. Fujii: r,
+ *                        [0, 1]. Outside is refused here, clamped in a stream. At 0 these are Lambert, exactly.
  *   specular.alpha       roughness as it stands in D and G: (0, 1], clamped to [FACET_ALPHA_FLOOR, 1]; negative is
  *                        refused here. It is not the perceptual roughness, whose square it is.
  *   fresnel.f0           reflectance at normal incidence, clamped to [0, 1]. Where all three are 0 and eta is given,
@@ -224,7 +224,7 @@ enum {
  *   uniform        FACET_STREAM_*: those of the streams above that hold one value for the whole batch.
  *   lights         added in array order, starting from zero; then ambient, emission, and with FACET_ACCUMULATE the
  *                  destination. Two lights in one call and two calls differ by rounding alone.
- *   ambient        irradiance from everywhere, W/m2, negative is 0; reflected as albedo/pi of it by every diffuse model.
+ *   ambient        irradiance from everywhere, W/m2, negative is 0; every diffuse model reflects albedo/pi of it.
  *   coverage       a bit a sample, least significant first, (count + 7)/8 bytes; NULL: all. Samples not covered are
  *                  neither counted nor written.
  *   radiance       may be one of the inputs, exactly; never a partial overlap.
@@ -289,7 +289,7 @@ typedef struct facet_image {
  * Refuses malformed arguments before anything is written. */
 static inline facet_status facet_encode(const facet_image *image, facet_error *error);
 
-/* ---- What the inline functions above call: sizes travel with the call, so that structs can grow ------------------- */
+/* ---- What the inline functions above call: sizes travel with the call, so that structs can grow ------------------ */
 
 FACET_API facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const facet_material *material,
                                              size_t material_size, facet_target target, facet_error *error);

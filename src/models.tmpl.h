@@ -1,7 +1,6 @@
 /* The models, once for every architecture and tier: what follows is the mathematics of facet.h's enumerators, over the
- * vector layer that was included before (arch/NAME.h). Each function's formula stands above it, as its source prints it,
- * then as it is evaluated. Names are those of facet.h; `f` is
- * always the BRDF times nl. */
+ * vector layer that was included before (arch/NAME.h). Each function's formula stands above it, as its source prints
+ * it, then as it is evaluated. Names are those of facet.h; `f` is always the BRDF times nl. */
 #ifndef FACET_MODELS_TMPL_H
 #define FACET_MODELS_TMPL_H
 
@@ -16,7 +15,10 @@ OP vf3 splat3(const float *a) { return (vf3){ vf_splat(a[0]), vf_splat(a[1]), vf
 OP vf3 add3(vf3 a, vf3 b) { return (vf3){ a.x + b.x, a.y + b.y, a.z + b.z }; }
 OP vf3 mul3(vf3 a, vf3 b) { return (vf3){ a.x * b.x, a.y * b.y, a.z * b.z }; }
 OP vf3 scale3(vf3 a, vf s) { return (vf3){ a.x * s, a.y * s, a.z * s }; }
-OP vf3 mad3(vf3 a, vf3 b, vf3 c) { return (vf3){ vf_mad(a.x, b.x, c.x), vf_mad(a.y, b.y, c.y), vf_mad(a.z, b.z, c.z) }; }
+OP vf3 mad3(vf3 a, vf3 b, vf3 c)
+{
+    return (vf3){ vf_mad(a.x, b.x, c.x), vf_mad(a.y, b.y, c.y), vf_mad(a.z, b.z, c.z) };
+}
 OP vf3 same3(vf a) { return (vf3){ a, a, a }; }
 OP vf3 one_minus3(vf3 a) { return (vf3){ 1.0f - a.x, 1.0f - a.y, 1.0f - a.z }; }
 #define ZERO3 same3(splat(0.0f))
@@ -64,8 +66,8 @@ OP vf3 diffuse_none(surface s, incidence i) { (void)s, (void)i; return ZERO3; }
 /* f = albedo/pi. */
 OP vf3 diffuse_lambert(surface s, incidence i) { return scale3(s.albedo, i.nl * INV_PI); }
 
-/* Oren and Nayar 1994, qualitative: f = albedo/pi (A + B max(0, cos(phi_i - phi_r)) sin a tan b), a and b the larger and
- * the smaller of the angles of l and v to n.
+/* Oren and Nayar 1994, qualitative: f = albedo/pi (A + B max(0, cos(phi_i - phi_r)) sin a tan b), a and b the larger
+ * and the smaller of the angles of l and v to n.
  * With s0 = vl - nl nv: cos(phi_i - phi_r) sin a tan b = s0/max(nl, nv), exactly. No angle, no azimuth of a vertical
  * vector, no tangent at grazing; nl s0/max(nl, nv) <= 1. */
 OP vf3 oren_nayar(surface s, incidence i)

@@ -48,7 +48,8 @@ static facet_status check_models(const facet_material *m, facet_error *error)
 }
 
 /* Numbers must lie in [least, most]; NaN lies nowhere. */
-static facet_status check_numbers(const float *a, int count, float least, float most, const char *field, facet_error *error)
+static facet_status check_numbers(const float *a, int count, float least, float most, const char *field,
+                                  facet_error *error)
 {
     for (int c = 0; c < count; c++)
         if (!(a[c] >= least && a[c] <= most)) return refuse(error, FACET_ERROR_VALUE, field, count > 1 ? c : -1);
@@ -76,7 +77,8 @@ static facet_status check_material(const facet_material *m, facet_error *error)
     };
     for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
         if (m->streams & rules[i].stream) continue;
-        facet_status status = check_numbers(rules[i].a, rules[i].count, rules[i].least, rules[i].most, rules[i].field, error);
+        facet_status status =
+            check_numbers(rules[i].a, rules[i].count, rules[i].least, rules[i].most, rules[i].field, error);
         if (status) return status;
     }
     for (int c = 0; c < 3; c++)

@@ -15,11 +15,14 @@ static facet_status check_light_vector(const float *a, const char *field, int in
     return check_vector(a, field, index, error);
 }
 
-static bool all_given(const float *const *stream, int components)
+static bool none_given(const float *const *stream) { return !stream[0] && !stream[1] && !stream[2]; }
+
+static facet_status check_stream(const float *const *stream, int components, const char *field, int index,
+                                 facet_error *error)
 {
     for (int c = 0; c < components; c++)
-        if (!stream[c]) return false;
-    return true;
+        if (!stream[c]) return refuse(error, FACET_ERROR_NULL, field, index);
+    return FACET_OK;
 }
 
 /* Raises *special where the light needs more of the kernel than a plain one. */
@@ -28,22 +31,23 @@ static facet_status check_light(const facet_light *light, int index, bool *speci
     if (light->kind != FACET_LIGHT_DIRECTIONAL) return refuse(error, FACET_ERROR_ENUM, "light.kind", index);
 
     const float *E = light->irradiance;
-    if (light->direction_of[0] || light->irradiance_of[0] || light->visibility || E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f)
+    if (light->direction_of[0] || light->irradiance_of[0] || light->visibility
+        || E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f)
         *special = true;
 
     facet_status status;
-    if (!light->direction_of[0] && !light->direction_of[1] && !light->direction_of[2])
+    if (none_given(light->direction_of))
         status = check_light_vector(light->direction, "light.direction", index, error);
     else
-        status = all_given(light->direction_of, 3) ? FACET_OK : refuse(error, FACET_ERROR_NULL, "light.direction_of", index);
+        status = check_stream(light->direction_of, 3, "light.direction_of", index, error);
     if (status) return status;
 
-    if (!light->irradiance_of[0] && !light->irradiance_of[1] && !light->irradiance_of[2])
+    if (none_given(light->irradiance_of))
         return check_light_vector(light->irradiance, "light.irradiance", index, error);
-    return all_given(light->irradiance_of, 3) ? FACET_OK : refuse(error, FACET_ERROR_NULL, "light.irradiance_of", index);
+    return check_stream(light->irradiance_of, 3, "light.irradiance_of", index, error);
 }
 
-/* Finds the streams that the plan reads, or the plan's own numbers in their place; names the first that is not there. */
+/* Finds the streams that the plan reads, or the plan's numbers in their place; names the first that is not there. */
 static facet_status gather_streams(job *j, const facet_batch *b, facet_error *error)
 {
     const plan_fields *p = j->plan;
@@ -51,7 +55,7 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
     const uint32_t required = FACET_STREAM_NORMAL | (view_needed ? FACET_STREAM_VIEW : 0u) | p->promised;
 
     j->streams = FACET_STREAM_NORMAL | (p->promised & p->needed);
-    if (view_needed || b->view[0] || b->view[1] || b->view[2]) j->streams |= FACET_STREAM_VIEW;
+    if (view_needed || !none_given(b->view)) j->streams |= FACET_STREAM_VIEW;
     j->uniform = b->uniform;
 
 #define POINTERS_1(owner, field) (const float *const[]){ owner field }
@@ -62,12 +66,15 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
 #define NUMBERS_3(field) p->field
 #define FACET_STREAM(id, field, components, owner, ...) \
     {                                                                                                                \
-        const float *const *stream = POINTERS_##components(b->, field), *numbers = NUMBERS_##owner(components, field); \
-        if ((required | j->streams) & FACET_STREAM_##id && !all_given(stream, components))                           \
-            return refuse(error, FACET_ERROR_NULL, #field, -1);                                                      \
+        const float *const *stream = POINTERS_##components(b->, field);                                              \
+        const float *numbers = NUMBERS_##owner(components, field);                                                   \
+        facet_status status = (required | j->streams) & FACET_STREAM_##id                                            \
+            ? check_stream(stream, components, #field, -1, error) : FACET_OK;                                        \
+        if (status) return status;                                                                                   \
         const bool theirs = !numbers || j->streams & FACET_STREAM_##id;                                              \
         if (!theirs) j->uniform |= FACET_STREAM_##id;                                                                \
-        for (int c = 0; c < components; c++) j->component[COMPONENT_##id + c] = theirs ? stream[c] : numbers + c;          \
+        for (int c = 0; c < components; c++)                                                                         \
+            j->component[COMPONENT_##id + c] = theirs ? stream[c] : numbers + c;                                     \
     }
 #include "streams.def"
     if (!(j->streams & FACET_STREAM_VIEW)) j->uniform &= ~(uint32_t)FACET_STREAM_VIEW;
@@ -90,7 +97,8 @@ static facet_status check_batch(job *j, const facet_batch *b, facet_error *error
     status = check_vector(b->ambient, "ambient", -1, error);
     if (!status && b->light_count && !b->lights) status = refuse(error, FACET_ERROR_NULL, "lights", -1);
     j->check_lights = false;
-    for (size_t i = 0; !status && i < b->light_count; i++) status = check_light(&b->lights[i], (int)i, &j->check_lights, error);
+    for (size_t i = 0; !status && i < b->light_count; i++)
+        status = check_light(&b->lights[i], (int)i, &j->check_lights, error);
     return status;
 }
 

@@ -1,306 +1,11 @@
-/* The batch kernel, once for every architecture and tier. A group of K vectors goes through the stages side by side, so
- * that one vector's arithmetic fills the other's latencies; every switch is uniform and stands outside the lanes.
+/* The batch kernel, once for every architecture and tier: walks a batch group by group, and sees to what is special.
  * Included after arch/NAME.h, with KERNEL defined as the function's name. */
-#include "models.tmpl.h"
-
-/* Vectors in a group: what measured fastest, set by the vector layer for each tier. */
-#define K     VF_INTERLEAVE
-#define GROUP (K * VF_LANES)
-#define EACH(k) _Pragma("GCC unroll 4") for (int k = 0; k < K; k++)
+#include "group.tmpl.h"
 
 /* Samples in a block: special cases are looked for, and mended, a block at a time. */
 #define BLOCK (VF_LANES > 1 ? 64 : 16)
 
-/* A bit for each of n <= 32 lanes. */
-#define LANES(n) ((uint32_t)((1ull << (n)) - 1))
-
-_Static_assert(GROUP <= 32 && BLOCK % GROUP == 0 && BLOCK % 8 == 0, "coverage of a group is a uint32_t, of a block a uint64_t");
-
-enum {
-    SPECULAR_BUILT = 0
-#define FACET_DISTRIBUTION(id, name, ...) || (FACET_DISTRIBUTION_##id != FACET_DISTRIBUTION_NONE && FACET_HAS(name))
-#include "models.def"
-};
-
-/* What the switches look at: a plan's and a batch's, or constants in a specialised row. */
-typedef struct {
-    facet_diffuse diffuse;
-    facet_distribution distribution;
-    enum visibility visibility;
-    facet_fresnel fresnel;
-    uint32_t needed;         /* FACET_STREAM_*: of the material's, what is read */
-    bool coupled, view, two_sided;
-    bool plain;              /* one light without streams, nothing else added, and nobody counts what is invalid */
-} features;
-
-/* ---- A group ----------------------------------------------------------------------------------------------------
- * Streams are read where they are needed, again for each light: a load is cheaper than a register held. */
-
-typedef struct {
-    const float *const *component;       /* of the block's streams */
-    size_t at;                           /* the group's first sample in the block */
-    vf nv[K];                            /* as it comes, of any sign */
-    terms terms[K];
-    vf is_finite[K];                     /* 0, or NaN where a light's or the destination's value was not finite */
-    vf3 sum[K];                          /* over the lights */
-} group;
-
-#define LOAD(g, id, k)  load(g, COMPONENT_##id, k)
-#define LOAD3(g, id, k) load3(g, COMPONENT_##id, k)
-
-OP vf load(const group *g, int component, int k)
-{
-    return vf_load(g->component[component] + g->at + k * VF_LANES);
-}
-
-OP vf3 load3(const group *g, int component, int k)
-{
-    return (vf3){ load(g, component, k), load(g, component + 1, k), load(g, component + 2, k) };
-}
-
-/* What a model uses of it is loaded where it uses it; the rest is dead code. */
-OP surface surface_at(const group *g, const plan_fields *p, int k)
-{
-    surface s;
-    s.terms = g->terms[k];
-    s.albedo = LOAD3(g, ALBEDO, k);
-    s.alpha = LOAD(g, ALPHA, k);
-    s.alpha2 = square(s.alpha);
-    s.f0 = LOAD3(g, F0, k);
-    s.f90 = splat(p->f90);
-    return s;
-}
-
-/* nv and what follows from sigma. */
-OP void prepare(group *g, features x, const job *j)
-{
-    const plan_fields *p = j->plan;
-    EACH(k) {
-        g->is_finite[k] = splat(0.0f);
-        g->sum[k] = ZERO3;
-        g->terms[k] = (terms){ splat(p->terms[0]), splat(p->terms[1]) };
-        g->nv[k] = splat(1.0f);
-    }
-    if (x.view) EACH(k) g->nv[k] = dot(LOAD3(g, NORMAL, k), LOAD3(g, VIEW, k));
-    if (!(j->streams & FACET_STREAM_SIGMA)) return;
-    switch (x.diffuse) {
-#define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                   \
-    case FACET_DIFFUSE_##id:                                                                                         \
-        if (FACET_HAS(name) && ((properties) & TERMS))                                                               \
-            EACH(k) g->terms[k] = terms_##name(LOAD(g, SIGMA, k));                                        \
-        break;
-#include "models.def"
-    }
-}
-
-/* ---- One light ---------------------------------------------------------------------------------------------------- */
-
-/* The end of a light's own stream, with zeros behind it. Rare: out of the way. */
-static __attribute__((noinline, cold)) void pad_light(const float *from, size_t left, float *padded)
-{
-    for (size_t lane = 0; lane < GROUP; lane++) padded[lane] = lane < left ? from[lane] : 0.0f;
-}
-
-/* A group of a light's own stream, whose end the padding of a batch's tail does not reach. */
-OP void load_light(const job *j, const float *stream, size_t i, vf *a, vf *is_finite)
-{
-    const float *from = stream + i;
-    float padded[GROUP];
-    if (j->count - i < GROUP) {
-        pad_light(from, j->count - i, padded);
-        from = padded;
-    }
-    EACH(k) {
-        a[k] = vf_load(from + k * VF_LANES);
-        is_finite[k] = is_finite[k] + (a[k] - a[k]);
-    }
-}
-
-OP void load_light3(const job *j, const float *const *stream, size_t i, vf3 *a, vf *is_finite)
-{
-    vf x[K], y[K], z[K];
-    load_light(j, stream[0], i, x, is_finite);
-    load_light(j, stream[1], i, y, is_finite);
-    load_light(j, stream[2], i, z, is_finite);
-    EACH(k) a[k] = (vf3){ x[k], y[k], z[k] };
-}
-
-OP void load_direction(group *g, features x, const job *j, const facet_light *light, size_t i, vf3 *l)
-{
-    if (!x.plain && light->direction_of[0])
-        load_light3(j, light->direction_of, i, l, g->is_finite);
-    else
-        EACH(k) l[k] = splat3(light->direction);
-}
-
-/* Irradiance times visibility. */
-OP void load_irradiance(group *g, features x, const job *j, const facet_light *light, size_t i, vf3 *E)
-{
-    if (!x.plain && light->irradiance_of[0])
-        load_light3(j, light->irradiance_of, i, E, g->is_finite);
-    else
-        EACH(k) E[k] = splat3(light->irradiance);
-    if (x.plain) return;
-    if (j->check_lights) EACH(k) E[k] = not_negative3(E[k]);
-
-    if (light->visibility) {
-        vf seen[K];
-        load_light(j, light->visibility, i, seen, g->is_finite);
-        EACH(k) E[k] = scale3(E[k], clamp(seen[k], 0.0f, 1.0f));
-    }
-}
-
-/* nl and nv, where the light and the eye are on the normal's side; nl = 0 elsewhere, and NaN where nl or nv is not finite. */
-OP void face(const group *g, features x, vf *nl, incidence *t)
-{
-    if (x.two_sided) EACH(k) nl[k] = vf_flip(nl[k], g->nv[k]);
-    EACH(k) {
-        vf nv = x.two_sided ? vf_abs(g->nv[k]) : g->nv[k];
-        t[k].nl = vf_where(vf_lt(splat(0.0f), nv), vf_max(splat(0.0f), nl[k])) + (nv - nv);
-        t[k].nv = vf_max(splat(TINY), nv);
-    }
-}
-
-OP void diffuse(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *f)
-{
-    switch (x.diffuse) {
-#define FACET_DIFFUSE(id, name, ...)                                                                                  \
-    case FACET_DIFFUSE_##id:                                                                                         \
-        if (FACET_HAS(name)) EACH(k) f[k] = diffuse_##name(surface_at(g, p, k), t[k]);                               \
-        break;
-#include "models.def"
-    }
-}
-
-OP void distribution(const group *g, features x, const plan_fields *p, const incidence *t, vf *D)
-{
-    switch (x.distribution) {
-#define FACET_DISTRIBUTION(id, name, ...)                                                                             \
-    case FACET_DISTRIBUTION_##id:                                                                                    \
-        if (FACET_HAS(name)) EACH(k) D[k] = distribution_##name(surface_at(g, p, k), t[k]);                          \
-        break;
-#include "models.def"
-    }
-}
-
-OP void visibility(const group *g, features x, const plan_fields *p, const incidence *t, vf *V)
-{
-    switch (x.visibility) {
-#define FACET_VISIBILITY(masking, distribution, properties)                                                           \
-    case VISIBILITY_##masking##_##distribution:                                                                      \
-        if (FACET_HAS(masking) && FACET_HAS(distribution))                                                           \
-            EACH(k) V[k] = visibility_##masking##_##distribution(surface_at(g, p, k), t[k]);                         \
-        break;
-#include "models.def"
-    case VISIBILITY_NONE:
-        break;
-    }
-}
-
-OP void fresnel(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *F)
-{
-    switch (x.fresnel) {
-#define FACET_FRESNEL(id, name, ...)                                                                                  \
-    case FACET_FRESNEL_##id:                                                                                         \
-        if (FACET_HAS(name)) EACH(k) F[k] = fresnel_##name(surface_at(g, p, k), t[k]);                               \
-        break;
-#include "models.def"
-    }
-}
-
-OP void add_light(group *g, features x, const job *j, const facet_light *light, size_t i)
-{
-    const plan_fields *p = j->plan;
-    vf3 l[K], f[K], E[K];
-    vf nl[K];
-    incidence t[K];
-
-    load_direction(g, x, j, light, i, l);
-    EACH(k) {
-        nl[k] = dot(LOAD3(g, NORMAL, k), l[k]);
-        t[k].vl = t[k].hh = t[k].nw2 = t[k].nxw2 = splat(0.0f);
-        f[k] = ZERO3;
-    }
-    if (x.view)
-        EACH(k) {
-            vf3 n = LOAD3(g, NORMAL, k), v = LOAD3(g, VIEW, k), w = add3(v, l[k]), nxw = cross(n, w);
-            t[k].vl = dot(v, l[k]);
-            t[k].hh = dot(w, w);
-            t[k].nw2 = square(dot(n, w));
-            t[k].nxw2 = dot(nxw, nxw);
-        }
-    face(g, x, nl, t);
-    diffuse(g, x, p, t, f);
-    if (SPECULAR_BUILT && x.distribution != FACET_DISTRIBUTION_NONE) {
-        vf D[K], V[K];
-        vf3 F[K];
-        EACH(k) {
-            D[k] = V[k] = splat(0.0f);
-            F[k] = ZERO3;
-        }
-        distribution(g, x, p, t, D);
-        visibility(g, x, p, t, V);
-        fresnel(g, x, p, t, F);
-        if (x.coupled) EACH(k) f[k] = mul3(f[k], one_minus3(F[k]));
-        EACH(k) f[k] = mad3(F[k], same3(D[k] * V[k]), f[k]);
-    }
-    load_irradiance(g, x, j, light, i, E);
-    EACH(k) g->sum[k] = mad3(f[k], E[k], g->sum[k]);
-}
-
-/* ---- The end of a group ------------------------------------------------------------------------------------------- */
-
-/* The component whose bits are the largest: one that is negative, infinite or NaN, if there is one. */
-OP vf largest(vf3 a) { return vf_bits_max(vf_bits_max(a.x, a.y), a.z); }
-
-/* A sign where a is above the limit, negative or NaN; where a >= 0 is below it. */
-OP vf above(vf a, float limit) { return vf_or(a, vf_bits_minus(splat(limit), a)); }
-OP vf below(vf a, float limit) { return vf_bits_minus(a, splat(limit)); }
-
-/* Adds what is there without a light. Returns a bit for each sample that a light's or the destination's value made
- * invalid, and is 0. */
-OP uint32_t add_constants(group *g, const job *j, float *const *radiance)
-{
-    uint32_t invalid = 0;
-    if (j->constant_radiance)
-        EACH(k) {
-            surface s = surface_at(g, j->plan, k);
-            g->sum[k] = add3(mad3(s.albedo, splat3(j->ambient), g->sum[k]), splat3(j->plan->emission));
-        }
-    if (j->flags & FACET_ACCUMULATE)
-        EACH(k) {
-            const int at = k * VF_LANES;
-            vf3 before = { vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) };
-            g->is_finite[k] = g->is_finite[k] + (before.x - before.x) + (before.y - before.y) + (before.z - before.z);
-            g->sum[k] = add3(g->sum[k], not_negative3(before));
-        }
-    if (j->check_lights || j->flags & FACET_ACCUMULATE)
-        EACH(k) {
-            vm valid = vf_eq(g->is_finite[k], splat(0.0f));
-            g->sum[k] = (vf3){ vf_where(valid, g->sum[k].x), vf_where(valid, g->sum[k].y), vf_where(valid, g->sum[k].z) };
-            invalid |= (~vm_bits(valid) & LANES(VF_LANES)) << k * VF_LANES;
-        }
-    return invalid;
-}
-
-/* Whether a component of the group is negative, infinite or NaN. */
-OP bool out_of_range(const group *g)
-{
-    uint32_t odd = 0;
-    EACH(k) odd |= vf_signs(above(largest(g->sum[k]), FLT_MAX));
-    return __builtin_expect(odd != 0, 0);
-}
-
-OP void store(const group *g, bool clamped, float *const *radiance)
-{
-    EACH(k) {
-        vf3 out = g->sum[k];
-        if (clamped) out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
-        vf_store(radiance[0] + k * VF_LANES, out.x);
-        vf_store(radiance[1] + k * VF_LANES, out.y);
-        vf_store(radiance[2] + k * VF_LANES, out.z);
-    }
-}
+_Static_assert(BLOCK % GROUP == 0 && BLOCK % 8 == 0 && BLOCK <= 64, "a bit a sample of a block fits into a uint64_t");
 
 /* ---- A block: groups in a row ------------------------------------------------------------------------------------ */
 
@@ -316,9 +21,9 @@ typedef struct {
 /* The bits of a vector's three components, together. */
 OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 
-/* Whether a sample of the group may need mending; errs on the side of yes: several components' bits together can look like
- * an infinity, but not while all are of magnitude below 2. Each check leaves a sign where something is wrong. A plain batch
- * needs no look at its vectors: what is not finite shows in the result, and a zero normal's result is 0. */
+/* Whether a sample of the group may need mending; errs on the side of yes: several components' bits together can look
+ * like an infinity, but not while all are of magnitude below 2. Each check leaves a sign where something is wrong. A
+ * plain batch's vectors need no look: what is not finite shows in the result, and a zero normal's result is 0. */
 OP bool needs_mending(const group *g, features x, const plan_fields *p)
 {
     uint32_t odd = 0;
@@ -345,7 +50,8 @@ OP bool needs_mending(const group *g, features x, const plan_fields *p)
     return odd != 0;
 }
 
-/* Shades the block's groups from `at` on, as long as they are whole, covered and in no need of mending. Returns where it stopped; adds to *invalid the samples that a light or the destination made invalid. */
+/* Shades the block's groups from `at` on, as long as they are whole, covered and in no need of mending. Returns where
+ * it stopped; sets in *invalid the bits of the samples that a light or the destination made invalid. */
 OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint64_t *invalid)
 {
     for (; at + GROUP <= b->count; at += GROUP) {
@@ -422,8 +128,8 @@ static block_shader *choose_shader(const job *j)
  * Nearly every group is whole and covered, has normals and finite values, and parameters in their domains. One that has
  * not is copied, mended, shaded like any other, and written sample by sample. */
 
-/* Fills `mended` from b's samples at `at`, with zeros behind the end, clamps what is outside its domain. Returns a bit for
- * each sample that is invalid: without a normal, or not finite. */
+/* Fills `values` from b's samples at `at`, with zeros behind the end, clamps what is outside its domain. Returns a bit
+ * for each sample that is invalid: without a normal, or not finite. */
 OP uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GROUP])
 {
     const plan_fields *p = j->plan;
@@ -437,7 +143,8 @@ OP uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GROUP]
 #define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
     for (int c = COMPONENT_##id; c <= COMPONENT_##id##_LAST; c++) {                                                  \
         if (!b->component[c]) continue;                                                                              \
-        for (size_t lane = 0; lane < GROUP; lane++) values[c][lane] = lane < count ? b->component[c][at + lane] : 0.0f; \
+        for (size_t lane = 0; lane < GROUP; lane++)                                                                  \
+            values[c][lane] = lane < count ? b->component[c][at + lane] : 0.0f;                                      \
         EACH(k) {                                                                                                    \
             vf a = vf_load(values[c] + k * VF_LANES);                                                                \
             if (j->streams & FACET_STREAM_##id) is_finite[k] = is_finite[k] + (a - a);                               \
@@ -462,7 +169,11 @@ static __attribute__((noinline)) uint32_t shade_mended(const job *j, const block
 
     float values[COMPONENT_COUNT][GROUP], result[3][GROUP];
     uint64_t invalid = mend(j, b, at, values);
-    block m = { .i = b->i + at, .count = GROUP, .covered = LANES(GROUP), .mended = true };
+    block m;
+    m.i = b->i + at;
+    m.count = GROUP;
+    m.covered = LANES(GROUP);
+    m.mended = true;
     for (int c = 0; c < COMPONENT_COUNT; c++) m.component[c] = values[c];
     for (int c = 0; c < 3; c++) {
         m.radiance[c] = result[c];
@@ -476,7 +187,7 @@ static __attribute__((noinline)) uint32_t shade_mended(const job *j, const block
     return (uint32_t)invalid & covered;
 }
 
-/* ---- A batch ------------------------------------------------------------------------------------------------------ */
+/* ---- A batch ---------------------------------------------------------------------------------------------------- */
 
 /* A block's coverage; reads no byte past the batch's. */
 OP uint64_t covered_samples(const job *j, size_t i, size_t count)
