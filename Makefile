@@ -11,7 +11,7 @@ VERSION := $(shell sed -n 's/.*FACET_VERSION_[MP][A-Z]* //p' src/facet.h | paste
 SONAME  := libfacet.so.$(firstword $(subst ., ,$(VERSION)))
 MACHINE := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
 
-# ---- What is built: an architecture is arch/NAME.h, a row in src/arches.def, and its flags here -----------------------
+# ---- What is built: an architecture is arch/NAME.h, a row in src/arches.def, and its flags here ----------------------
 
 FLAGS.sse41  := -msse4.1
 FLAGS.avx2   := -mavx2 -mfma
@@ -109,12 +109,15 @@ BASELINES := $(if $(CLANG),clang_256 clang_512) $(if $(GCC),gcc_256 gcc_512)
 
 $(BUILD)/bench/tile_%.o: bench/autovectorized.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(say)$(COMPILER.$(call part,1)) -std=gnu11 $(WARN) $(NATIVE) -mprefer-vector-width=$(call part,2) -DTILE_SHADER=tile_$* -c $< -o $@
+	$(say)$(COMPILER.$(call part,1)) -std=gnu11 $(WARN) $(NATIVE) -mprefer-vector-width=$(call part,2) \
+	    -DTILE_SHADER=tile_$* -c $< -o $@
 
 $(BUILD)/bench/textbook.o: override CFLAGS := -O2
 $(BUILD)/bench/bench.o: PROGRAM += $(if $(CLANG),-DBASELINE_CLANG) $(if $(GCC),-DBASELINE_GCC)
 
-$(BUILD)/facet-bench: $(BUILD)/bench/bench.o $(BUILD)/bench/textbook.o $(BASELINES:%=$(BUILD)/bench/tile_%.o) $(BUILD)/libfacet.a
+BENCH := bench textbook $(BASELINES:%=tile_%)
+
+$(BUILD)/facet-bench: $(BENCH:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 bench: $(BUILD)/facet-bench ## times every kernel and the baselines, interleaved
@@ -147,6 +150,9 @@ $(BUILD)/relight: $(BUILD)/tests/relight.o $(BUILD)/tests/exr.o $(BUILD)/libface
 check: ## every test that this machine can run; `make deps check` leaves none out
 	@MAKE='$(MAKE_COMMAND)' CC='$(CC)' CFLAGS='$(CFLAGS)' CPPFLAGS='$(CPPFLAGS)' LDFLAGS='$(LDFLAGS)' RUN='$(RUN)' \
 	    sh tests/run.sh '$(BUILD)'
+
+update: $(BUILD)/facet-check ## measures tests/accuracy.tsv and tests/golden.txt anew
+	$(RUN) $(BUILD)/facet-check --update accuracy golden
 
 # README's tables between <!-- NAME --> and <!-- /NAME -->.
 README := README.md
@@ -199,7 +205,7 @@ uninstall: ## removes what install put there
 clean: ## removes what was built
 	rm -rf '$(BUILD)'
 
-.PHONY: readme
+.PHONY: readme update
 
 help: ## lists the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 12

@@ -1,4 +1,5 @@
-/* The public functions beside their arithmetic: words, plans as bytes, sizes, descriptions, threads, passes of lights. */
+/* The public functions beside their arithmetic: words, plans as bytes, sizes, descriptions, threads, passes of
+ * lights. */
 #include "cases.h"
 #include "guarded.h"
 #include "harness.h"
@@ -16,7 +17,7 @@ enum { ALL_STREAMS = FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALP
 
 static const facet_target strict_scalar = { FACET_ARCH_SCALAR, FACET_TIER_STRICT };
 
-/* ---- Words ---------------------------------------------------------------------------------------------------------- */
+/* ---- Words ------------------------------------------------------------------------------------------------------- */
 
 static void test_words(void)
 {
@@ -37,7 +38,8 @@ static void test_words(void)
             expect(facet_value(kind, word) == value, "'%s' is %d, not %d", word, facet_value(kind, word), value);
         expect(value == lasts[i].last + 1, "kind %d has %d words", (int)kind, value);
         const char *last = facet_word(kind, lasts[i].last);
-        expect(last && !strcmp(last, lasts[i].word), "%d of kind %d is '%s'", lasts[i].last, (int)kind, last ? last : "NULL");
+        expect(last && !strcmp(last, lasts[i].word), "%d of kind %d is '%s'", lasts[i].last, (int)kind,
+               last ? last : "NULL");
         expect(!facet_word(kind, -1) && !facet_word(kind, INT_MAX) && !facet_word(kind, INT_MIN), "a word for nothing");
         expect(!facet_has(kind, value) && !facet_has(kind, -1) && !facet_has(kind, INT_MIN), "has what has no word");
         expect(facet_value(kind, "no-such-word") == -1 && facet_value(kind, "") == -1 && facet_value(kind, NULL) == -1,
@@ -45,8 +47,8 @@ static void test_words(void)
     }
     test("unknown kinds have no words");
     for (int kind = FACET_KIND_STATUS + 1; kind < FACET_KIND_STATUS + 300; kind++)
-        expect(!facet_word((facet_kind)kind, 0) && !facet_has((facet_kind)kind, 0) && facet_value((facet_kind)kind, "none") == -1,
-               "kind %d", kind);
+        expect(!facet_word((facet_kind)kind, 0) && !facet_has((facet_kind)kind, 0)
+               && facet_value((facet_kind)kind, "none") == -1, "kind %d", kind);
     expect(!facet_word((facet_kind)-1, 0) && !facet_has((facet_kind)-1, 0), "kind -1");
 }
 
@@ -68,14 +70,14 @@ static void test_build(void)
     expect(facet_arch_lanes((facet_arch)99) == 0 && facet_arch_lanes((facet_arch)-1) == 0, "lanes of no architecture");
 }
 
-/* ---- Materials and batches to work with ----------------------------------------------------------------------------- */
+/* ---- Materials and batches to work with -------------------------------------------------------------------------- */
 
 static facet_material rich_material(void)
 {
     return (facet_material){
         .diffuse = { FACET_DIFFUSE_OREN_NAYAR, { 0.8f, 0.5f, 0.25f }, 0.5f },
         .specular = { FACET_DISTRIBUTION_GGX, FACET_MASKING_SMITH_CORRELATED, 0.25f },
-        .fresnel = { FACET_FRESNEL_SCHLICK, { 0.04f, 0.05f, 0.06f }, 0.9f, { 1.5f, 1.6f, 1.7f }, { 0.5f, 0, 0 }, 1.25f },
+        .fresnel = { FACET_FRESNEL_SCHLICK, { 0.04f, 0.05f, 0.06f }, 0.9f, { 1.5f, 1.6f, 1.7f }, { 0.5f }, 1.25f },
         .coupled = true,
         .emission = { 0.1f, 0.2f, 0.3f },
     };
@@ -107,7 +109,7 @@ static bool same_radiance(const facet_batch *a, const facet_batch *b)
     return same;
 }
 
-/* ---- Plans ---------------------------------------------------------------------------------------------------------- */
+/* ---- Plans ------------------------------------------------------------------------------------------------------- */
 
 static void test_plan_bytes(void)
 {
@@ -141,8 +143,8 @@ static void test_plan_bytes(void)
             if (facet_plan_init(&plan, &m, (facet_target){ (facet_arch)arch, (facet_tier)tier }, NULL)) continue;
             const facet_target target = facet_plan_target(&plan);
             const facet_arch want = arch == FACET_ARCH_BEST ? facet_arch_best() : (facet_arch)arch;
-            expect(target.arch == want && target.tier == (facet_tier)tier, "%d %d is %d %d", arch, tier, (int)target.arch,
-                   (int)target.tier);
+            expect(target.arch == want && target.tier == (facet_tier)tier, "%d %d is %d %d", arch, tier,
+                   (int)target.arch, (int)target.tier);
         }
 }
 
@@ -169,7 +171,8 @@ static void test_foreign_plans(void)
             a.plan.opaque[k] = i == 0 ? 0 : i == 1 ? UINT64_MAX : random_u64(&r);
         const char *fault = fault_of(attempt_plan, &a);
         expect(!fault, "%s", fault);
-        expect(a.status == FACET_ERROR_PLAN && a.described == 0, "status %d, %zu bytes described", (int)a.status, a.described);
+        expect(a.status == FACET_ERROR_PLAN && a.described == 0, "status %d, %zu bytes described", (int)a.status,
+               a.described);
     }
 
     test("cut short or with a byte changed, a plan does no harm");
@@ -183,18 +186,18 @@ static void test_foreign_plans(void)
             if (facet_arch_lanes(arch) && !facet_has(FACET_KIND_ARCH, (int)arch)) continue;
             fault = fault_of(attempt_plan, &a);
             expect(!fault, "byte %zu: %s", at, fault);
-            expect(a.status == FACET_OK || a.status == FACET_ERROR_PLAN || a.status == FACET_ERROR_NULL, "byte %zu: status %d",
-                   at, (int)a.status);
+            expect(a.status == FACET_OK || a.status == FACET_ERROR_PLAN || a.status == FACET_ERROR_NULL,
+                   "byte %zu: status %d", at, (int)a.status);
         }
     free_batch(&b);
 }
 
-/* ---- Descriptions --------------------------------------------------------------------------------------------------- */
+/* ---- Descriptions ------------------------------------------------------------------------------------------------ */
 
 typedef size_t describer(const void *what, char *text, size_t size);
 
 static size_t describe_plan(const void *plan, char *text, size_t size) { return facet_plan_describe(plan, text, size); }
-static size_t describe_error(const void *error, char *text, size_t size) { return facet_error_describe(error, text, size); }
+static size_t describe_error(const void *e, char *text, size_t size) { return facet_error_describe(e, text, size); }
 
 /* As snprintf: the whole length whatever the size, nothing written beyond it, a final 0 unless there is no room. */
 static void check_describe(describer *describe, const void *what, const char *begins)
@@ -235,7 +238,8 @@ static void test_descriptions(void)
     test("errors in words, at every size");
     static const struct { facet_error error; const char *words; } errors[] = {
         { { FACET_OK, NULL, -1 }, "no error" },
-        { { FACET_ERROR_VALUE, "light.irradiance", 3 }, "light.irradiance[3]: a number is NaN, infinite or outside its domain" },
+        { { FACET_ERROR_VALUE, "light.irradiance", 3 },
+          "light.irradiance[3]: a number is NaN, infinite or outside its domain" },
         { { FACET_ERROR_NULL, "plan", -1 }, "plan: a pointer that is needed is NULL" },
         { { FACET_ERROR_VALUE, "light.direction", INT_MAX }, "light.direction[2147483647]: a number" },
         { { FACET_ERROR_VALUE, "light.direction", INT_MIN }, "light.direction: a number" },
@@ -245,7 +249,7 @@ static void test_descriptions(void)
         check_describe(describe_error, &errors[i].error, errors[i].words);
 }
 
-/* ---- Sizes ---------------------------------------------------------------------------------------------------------- */
+/* ---- Sizes ------------------------------------------------------------------------------------------------------- */
 
 /* A struct of `size` bytes: cut off, or with a tail of zeros. */
 static void resize(void *to, size_t size, const void *from, size_t whole)
@@ -270,8 +274,8 @@ static void test_material_sizes(void)
         resize(&given, size, &whole, sizeof whole);
         facet_plan_init(&want, &filled, strict_scalar, &want_error);
         facet_plan_init_sized(&plan, sizeof plan, &given.m, size, strict_scalar, &error);
-        expect(error.code == want_error.code && !memcmp(&plan, &want, sizeof plan), "%zu bytes: status %d, not %d", size,
-               (int)error.code, (int)want_error.code);
+        expect(error.code == want_error.code && !memcmp(&plan, &want, sizeof plan), "%zu bytes: status %d, not %d",
+               size, (int)error.code, (int)want_error.code);
     }
     for (size_t at = sizeof whole; at < sizeof whole + TAIL; at++) {
         facet_plan plan = { { 7 } };
@@ -279,7 +283,8 @@ static void test_material_sizes(void)
         resize(&given, sizeof given, &whole, sizeof whole);
         given.tail[at - sizeof whole] = 1;
         facet_plan_init_sized(&plan, sizeof plan, &given.m, sizeof whole + TAIL, strict_scalar, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "material") && plan.opaque[0] == 7, "byte %zu is taken", at);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "material") && plan.opaque[0] == 7,
+               "byte %zu is taken", at);
     }
 }
 
@@ -293,7 +298,8 @@ static void test_plan_sizes(void)
     memset(&given, 0xa5, sizeof given);
     for (size_t size = 0; size < sizeof want; size++) {
         facet_plan_init_sized(&given.plan, size, &m, sizeof m, strict_scalar, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "plan"), "%zu bytes: status %d", size, (int)error.code);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "plan"), "%zu bytes: status %d", size,
+               (int)error.code);
     }
     for (size_t i = 0; i < sizeof given; i++) expect(((unsigned char *)&given)[i] == 0xa5, "written on refusal");
     facet_plan_init_sized(&given.plan, sizeof given, &m, sizeof m, strict_scalar, &error);
@@ -317,8 +323,8 @@ static void test_batch_sizes(void)
         resize(&given, size, &other.batch, sizeof other.batch);
         facet_shade(&plan, &filled, &want_error);
         facet_shade_sized(&plan, &given.batch, size, sizeof(facet_light), &error);
-        expect(error.code == want_error.code && same_radiance(&b.batch, &other.batch), "%zu bytes: status %d, not %d", size,
-               (int)error.code, (int)want_error.code);
+        expect(error.code == want_error.code && same_radiance(&b.batch, &other.batch), "%zu bytes: status %d, not %d",
+               size, (int)error.code, (int)want_error.code);
     }
     for (size_t at = 0; at < TAIL; at++) {
         facet_error error;
@@ -327,12 +333,13 @@ static void test_batch_sizes(void)
         facet_shade_sized(&plan, &given.batch, sizeof other.batch + TAIL, sizeof(facet_light), &error);
         expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "batch"), "byte %zu is taken", at);
     }
-    const size_t light_sizes[] = { 0, 4, sizeof(facet_light) - sizeof(void *), sizeof(facet_light) + sizeof(void *), SIZE_MAX };
+    const size_t light_sizes[] = { 0, 4, sizeof(facet_light) - sizeof(void *), sizeof(facet_light) + sizeof(void *),
+                                   SIZE_MAX };
     for (size_t i = 0; i < sizeof light_sizes / sizeof light_sizes[0]; i++) {
         facet_error error;
         facet_shade_sized(&plan, &other.batch, sizeof other.batch, light_sizes[i], &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "lights"), "lights of %zu bytes: status %d", light_sizes[i],
-               (int)error.code);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "lights"), "lights of %zu bytes: status %d",
+               light_sizes[i], (int)error.code);
     }
     free_batch(&b);
     free_batch(&other);
@@ -343,7 +350,8 @@ static void test_image_sizes(void)
     struct { facet_image image; unsigned char tail[TAIL]; } given;
     static const float light[4] = { 0.1f, 0.2f, 0.3f, 0.4f };
     uint8_t pixels[16] = { 0 }, want[16] = { 0 };
-    const facet_image whole = { .width = 2, .height = 2, .radiance = { light, light, light }, .exposure = 2, .pixels = pixels };
+    const facet_image whole = { .width = 2, .height = 2, .radiance = { light, light, light }, .exposure = 2,
+                                .pixels = pixels };
     test("an image cut short or made longer, alike");
     for (size_t size = 0; size <= sizeof whole + TAIL; size += sizeof(void *)) {
         facet_image filled;
@@ -354,8 +362,8 @@ static void test_image_sizes(void)
         if (filled.pixels) filled.pixels = want;
         facet_encode(&filled, &want_error);
         facet_encode_sized(&given.image, size, &error);
-        expect(error.code == want_error.code && !memcmp(pixels, want, sizeof pixels), "%zu bytes: status %d, not %d", size,
-               (int)error.code, (int)want_error.code);
+        expect(error.code == want_error.code && !memcmp(pixels, want, sizeof pixels), "%zu bytes: status %d, not %d",
+               size, (int)error.code, (int)want_error.code);
     }
     for (size_t at = 0; at < TAIL; at++) {
         facet_error error;
@@ -366,7 +374,7 @@ static void test_image_sizes(void)
     }
 }
 
-/* ---- Passes of lights ----------------------------------------------------------------------------------------------- */
+/* ---- Passes of lights -------------------------------------------------------------------------------------------- */
 
 enum { LIGHTS = 70, SHADED = 67 };
 
@@ -430,7 +438,7 @@ static void test_empty(void)
     free_batch(&b);
 }
 
-/* ---- Threads -------------------------------------------------------------------------------------------------------- */
+/* ---- Threads ----------------------------------------------------------------------------------------------------- */
 
 enum { THREADS = 8, THREAD_SAMPLES = 301 };
 
@@ -469,7 +477,8 @@ static void check_threads(bool shared)
     for (int i = 0; i < THREADS; i++) {
         batches[i] = random_batch(THREAD_SAMPLES, shared ? 8 : 8 + (uint64_t)i);
         facet_shade(&plan, &batches[i].batch, NULL);
-        jobs[i] = (thread_job){ .plan = &plan, .material = &m, .want = &batches[i].batch, .batch = batches[shared ? 0 : i].batch };
+        jobs[i] = (thread_job){ .plan = &plan, .material = &m, .want = &batches[i].batch,
+                                .batch = batches[shared ? 0 : i].batch };
         for (int c = 0; c < 3; c++) jobs[i].batch.radiance[c] = jobs[i].radiance[c];
     }
     int started = 0;

@@ -10,7 +10,12 @@
 
 const stream_source all_per_sample[INPUTS] = { 0 };
 
-static const struct { const char *name; uint32_t bit; int components, sources; stream_source source[3]; } inputs[INPUTS] = {
+static const struct {
+    const char *name;
+    uint32_t bit;
+    int components, sources;
+    stream_source source[3];
+} inputs[INPUTS] = {
     [NORMAL] = { "normal", FACET_STREAM_NORMAL, 3, 2, { PER_SAMPLE, UNIFORM } },
     [VIEW] = { "view", FACET_STREAM_VIEW, 3, 3, { PER_SAMPLE, UNIFORM, ELSEWHERE } },
     [ALBEDO] = { "albedo", FACET_STREAM_ALBEDO, 3, 3, { PER_SAMPLE, UNIFORM, ELSEWHERE } },
@@ -26,8 +31,9 @@ static const int light_counts[] = { 0, 1, 2, 5 };
 
 /* Around every multiple of a vector, of a group of vectors, of a block of 64. */
 static const unsigned char counts[] = {
-    0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30,
-    31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49, 61, 62, 63, 64, 65, 66, 67, 96, 127, 128, 129, 131,
+    0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28,
+    29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49, 61, 62, 63, 64, 65, 66, 67, 96,
+    127, 128, 129, 131,
 };
 static const unsigned char counts_for_slow_machines[] = {
     0, 1, 2, 3, 4, 5, 7, 8, 9, 13, 15, 16, 17, 31, 32, 33, 49, 63, 64, 67, 128, 131,
@@ -44,7 +50,7 @@ static const unsigned edges_in_64[] = { 0, 1, 16 };
 enum { PLACE_LOW = 16, PLACE_HIGH, PLACES };
 enum { COVERAGE_LOW, COVERAGE_INSIDE, COVERAGE_HIGH, COVERAGE_PLACES };
 
-/* ---- The factors and what excludes what ------------------------------------------------------------------------------- */
+/* ---- The factors and what excludes what -------------------------------------------------------------------------- */
 
 static int tested_count(int level)
 {
@@ -78,8 +84,10 @@ static uint64_t cases_without_view(void)
 static uint64_t levels_from(int stream, bool uniform)
 {
     uint64_t mask = 0;
-    for (int i = 0; i < inputs[stream].sources; i++)
-        if (inputs[stream].source[i] == PER_SAMPLE || (uniform && inputs[stream].source[i] == UNIFORM)) mask |= (uint64_t)1 << i;
+    for (int i = 0; i < inputs[stream].sources; i++) {
+        const stream_source source = inputs[stream].source[i];
+        if (source == PER_SAMPLE || (uniform && source == UNIFORM)) mask |= (uint64_t)1 << i;
+    }
     return mask;
 }
 
@@ -120,7 +128,7 @@ factor_space arrangement_space(void)
     int *levels = space.levels;
     levels[FACTOR_CASE] = case_count();
     levels[FACTOR_LIGHTS] = sizeof light_counts / sizeof light_counts[0];
-    levels[FACTOR_TWO_SIDED] = levels[FACTOR_ACCUMULATE] = 2;
+    levels[FACTOR_TWO_SIDED] = levels[FACTOR_ACCUMULATE] = levels[FACTOR_COUNTED] = 2;
     levels[FACTOR_ADDED] = ADDED;
     levels[FACTOR_EDGES] = sizeof edges_in_64 / sizeof edges_in_64[0];
     levels[FACTOR_IN_PLACE] = 1 + INPUTS;
@@ -134,7 +142,7 @@ factor_space arrangement_space(void)
     return space;
 }
 
-/* ---- Values -------------------------------------------------------------------------------------------------------------- */
+/* ---- Values ------------------------------------------------------------------------------------------------------ */
 
 static guarded memory[COMPONENTS], coverage_memory;
 static arrangement now;
@@ -202,17 +210,37 @@ static void share_values(test_random *r)
     }
 }
 
+static float draw_edge(test_random *r, bool finite)
+{
+    static const float not_finite[] = { NAN, INFINITY, -INFINITY };
+    const uint64_t kind = random_u64(r) % 4, pick = random_u64(r);
+    return kind || finite ? edge_values[pick % (uint64_t)edge_count] : not_finite[pick % 3];
+}
+
 /* Here and there an edge value, NaN or infinity, in what is read per sample. */
 static void draw_edges(test_random *r, unsigned in_64)
 {
-    const float not_finite[] = { NAN, INFINITY, -INFINITY };
     for (size_t i = 0; i < MOST_COUNT; i++) {
         const int s = (int)(random_u64(r) % INPUTS), light = (int)(random_u64(r) % MOST_LIGHTS);
         const int component = component_of(s, light) + (int)(random_u64(r) % (uint64_t)inputs[s].components);
-        const uint64_t pick = random_u64(r);
-        now.ordinary[i] = pick % 64 >= in_64 || now.sources[s] != PER_SAMPLE;
-        if (now.ordinary[i]) continue;
-        now.values[component][i] = pick / 64 % 4 ? edge_values[pick / 256 % (uint64_t)edge_count] : not_finite[pick / 256 % 3];
+        const float edge = draw_edge(r, false);
+        now.ordinary[i] = random_u64(r) % 64 >= in_64 || now.sources[s] != PER_SAMPLE;
+        if (!now.ordinary[i]) now.values[component][i] = edge;
+    }
+}
+
+/* Now and then an edge value for all samples: in the batch, or as a light's red irradiance, which must be finite. */
+static void draw_uniform_edges(test_random *r)
+{
+    for (int s = 0; s < INPUTS; s++) {
+        const bool light = s == IRRADIANCE && now.sources[s] == ELSEWHERE;
+        const float edge = draw_edge(r, light);
+        if (random_u64(r) % 8 || !(light || now.sources[s] == UNIFORM)) continue;
+        if (light && !(now.values[component_of(s, 0) + 1][0] > 0)) continue;      /* it may not be all 0 */
+        for (size_t i = 0; i < MOST_COUNT; i++) {
+            now.values[component_of(s, 0)][i] = edge;
+            now.ordinary[i] = false;
+        }
     }
 }
 
@@ -243,11 +271,12 @@ static void draw_values(test_random *r, const design *d)
     for (size_t i = 0; i < MOST_COUNT; i++) draw_sample(r, i);
     share_values(r);
     draw_edges(r, edges_in_64[d->level[FACTOR_EDGES]]);
+    if (d->level[FACTOR_EDGES] > 0) draw_uniform_edges(r);
     draw_destination(r);
     draw_constants(r, d->level[FACTOR_ADDED]);
 }
 
-/* ---- Places ------------------------------------------------------------------------------------------------------------- */
+/* ---- Places ------------------------------------------------------------------------------------------------------ */
 
 static float *place_at(int component, int level, size_t length)
 {
@@ -298,7 +327,7 @@ static void place_coverage(test_random *r, int kind, int level)
     }
 }
 
-/* ---- Materials and batches ------------------------------------------------------------------------------------------------ */
+/* ---- Materials and batches --------------------------------------------------------------------------------------- */
 
 facet_material material_of(const arrangement *a, const stream_source *sources)
 {
@@ -315,7 +344,8 @@ facet_material material_of(const arrangement *a, const stream_source *sources)
     return m;
 }
 
-static void point_light(const arrangement *a, float *const *at, int number, facet_light *light, const stream_source *sources)
+static void point_light(const arrangement *a, float *const *at, int number, facet_light *light,
+                        const stream_source *sources)
 {
     *light = (facet_light){ .kind = FACET_LIGHT_DIRECTIONAL };
     for (int c = 0; c < 3; c++) {
@@ -346,19 +376,20 @@ facet_batch point_batch(const arrangement *a, float *const *at, facet_light *lig
     return b;
 }
 
-/* ---- An arrangement --------------------------------------------------------------------------------------------------------- */
+/* ---- An arrangement ---------------------------------------------------------------------------------------------- */
 
 static void describe(const design *d)
 {
     const int *level = d->level;
     size_t end = (size_t)snprintf(now.words, sizeof now.words,
-                                  "%s, %zu samples, %d lights, flags %u, coverage %d, in place %d, added %d, edges %d;",
-                                  now.kernel->name, now.count, now.lights, (unsigned)now.flags,
-                                  level[FACTOR_COVERAGE], level[FACTOR_IN_PLACE], level[FACTOR_ADDED], level[FACTOR_EDGES]);
+                                  "%s, %zu samples, %d lights, flags %u, coverage %d, in place %d, added %d, edges %d%s;",
+                                  now.kernel->name, now.count, now.lights, (unsigned)now.flags, level[FACTOR_COVERAGE],
+                                  level[FACTOR_IN_PLACE], level[FACTOR_ADDED], level[FACTOR_EDGES],
+                                  now.counted ? ", counted" : "");
     for (int s = 0; s < INPUTS && end < sizeof now.words; s++)
         if (level[FACTOR_SOURCE + s] >= 0)
-            end += (size_t)snprintf(now.words + end, sizeof now.words - end, " %s %d@%d", inputs[s].name, (int)now.sources[s],
-                                    level[FACTOR_PLACE + s]);
+            end += (size_t)snprintf(now.words + end, sizeof now.words - end, " %s %d@%d", inputs[s].name,
+                                    (int)now.sources[s], level[FACTOR_PLACE + s]);
 }
 
 design plain_design(int target, int kernel, uint64_t seed)
@@ -367,10 +398,14 @@ design plain_design(int target, int kernel, uint64_t seed)
     test_random r = { seed };
     design d;
     for (int f = 0; f < FACTORS; f++) d.level[f] = 0;
-    for (int f = FACTOR_SOURCE + ALBEDO; f <= FACTOR_SOURCE + F0; f++)
-        d.level[f] = random_u64(&r) & 1 ? (int)(random_u64(&r) % (uint64_t)space.levels[f]) : 0;
+    for (int s = ALBEDO; s <= F0; s++) {
+        const bool read = case_at(kernel)->streams & inputs[s].bit, per_sample = random_u64(&r) & 1;
+        d.level[FACTOR_SOURCE + s] = !read ? -1 : per_sample ? 0 : (int)(random_u64(&r) % (uint64_t)inputs[s].sources);
+    }
     for (int s = DIRECTION; s <= VISIBILITY; s++) d.level[FACTOR_SOURCE + s] = 1;
     for (int f = FACTOR_PLACE; f <= FACTOR_PLACE + INPUTS; f++) d.level[f] = (int)(random_u64(&r) % PLACES);
+    d.level[FACTOR_EDGES] = (int)(random_u64(&r) % (uint64_t)space.levels[FACTOR_EDGES]);
+    d.level[FACTOR_COUNTED] = random_u64(&r) % 4 == 0;
     d.level[FACTOR_TARGET] = target;
     d.level[FACTOR_CASE] = kernel;
     d.level[FACTOR_LIGHTS] = 1;
@@ -391,6 +426,7 @@ const arrangement *arrange(const design *d, int number)
         const int source = level[FACTOR_SOURCE + s];
         now.sources[s] = source < 0 ? ELSEWHERE : inputs[s].source[source];
     }
+    now.counted = level[FACTOR_COUNTED];
     now.has_view = now.sources[VIEW] != ELSEWHERE;
     now.has_visibility = now.sources[VISIBILITY] != ELSEWHERE;
     describe(d);
@@ -401,7 +437,7 @@ const arrangement *arrange(const design *d, int number)
     return &now;
 }
 
-/* ---- Memory ----------------------------------------------------------------------------------------------------------------- */
+/* ---- Memory ------------------------------------------------------------------------------------------------------ */
 
 static void fill_with_canaries(float *a, size_t count)
 {
@@ -444,15 +480,16 @@ static bool canaries_live(const float *from, const float *to)
 
 const char *find_damage(const arrangement *a)
 {
-    for (int i = 0; i < RADIANCE_AT; i++)
-        if (a->place[i] && !is_radiance(a, a->place[i]) && memcmp(a->place[i], a->values[i], length_of(i) * sizeof(float)))
-            return "an input was written";
+    for (int i = 0; i < RADIANCE_AT; i++) {
+        if (!a->place[i] || is_radiance(a, a->place[i])) continue;
+        if (memcmp(a->place[i], a->values[i], length_of(i) * sizeof(float))) return "an input was written";
+    }
     for (int c = 0; c < 3; c++) {
         const float *radiance = a->place[RADIANCE_AT + c];
         const guarded *m = memory_of(radiance);
-        if (!canaries_live((const float *)(const void *)m->first, radiance)) return "something before the radiance was written";
-        if (!canaries_live(radiance + a->count, (const float *)(const void *)m->end))
-            return "something behind the radiance was written";
+        const float *first = (const float *)(const void *)m->first, *end = (const float *)(const void *)m->end;
+        if (!canaries_live(first, radiance)) return "something before the radiance was written";
+        if (!canaries_live(radiance + a->count, end)) return "something behind the radiance was written";
     }
     return NULL;
 }

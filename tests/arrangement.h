@@ -1,5 +1,5 @@
-/* A batch in one arrangement of everything that must not matter: where its streams stand, where its parameters come from,
- * what is covered, what aliases what. */
+/* A batch in one arrangement of everything that must not matter: where its streams stand, where its parameters come
+ * from, what is covered, what aliases what. */
 #ifndef ARRANGEMENT_H
 #define ARRANGEMENT_H
 
@@ -19,11 +19,12 @@ enum {
     FACTOR_SOURCE,                                   /* of stream s: + s */
     FACTOR_PLACE = FACTOR_SOURCE + INPUTS,           /* + s; + INPUTS: radiance */
     FACTOR_COVERAGE_PLACE = FACTOR_PLACE + INPUTS + 1,
-    FACTOR_TARGET, FACTOR_COUNT, FACTOR_ACCUMULATE, FACTOR_ADDED, FACTOR_EDGES, FACTORS
+    FACTOR_TARGET, FACTOR_COUNT, FACTOR_ACCUMULATE, FACTOR_ADDED, FACTOR_EDGES, FACTOR_COUNTED, FACTORS
 };
 
 /* The components of all streams, five times those of the lights, then radiance. */
-enum { MOST_LIGHTS = 5, LIGHT_AT = 14, RADIANCE_AT = LIGHT_AT + 7 * MOST_LIGHTS, COMPONENTS = RADIANCE_AT + 3, MOST_COUNT = 131 };
+enum { MOST_LIGHTS = 5, LIGHT_AT = 14, RADIANCE_AT = LIGHT_AT + 7 * MOST_LIGHTS, COMPONENTS = RADIANCE_AT + 3 };
+enum { MOST_COUNT = 131 };
 
 typedef struct {
     const kernel_case *kernel;
@@ -32,6 +33,7 @@ typedef struct {
     int lights;
     uint32_t flags;
     bool has_view, has_visibility;
+    bool counted;                                /* the batch counts invalid samples */
     stream_source sources[INPUTS];
     float values[COMPONENTS][MOST_COUNT];        /* what each sample has; radiance: what stood there before */
     bool ordinary[MOST_COUNT];                   /* no edge value among them */
@@ -51,8 +53,8 @@ facet_batch point_batch(const arrangement *, float *const *at, facet_light *ligh
 
 factor_space arrangement_space(void);
 
-/* The everyday batch, which a kernel may have a short way for: many covered samples without edge values, one light without
- * streams, nothing added; drawn are the parameters' sources and the places. */
+/* The everyday batch, which a kernel may have a short way for: many covered samples, one light without streams, nothing
+ * added; drawn are the parameters' sources, the places, edge values, and whether invalid samples are counted. */
 design plain_design(int target, int kernel, uint64_t seed);
 
 /* There is one arrangement at a time, between open_ and close_arrangements; `number` seeds its values. */

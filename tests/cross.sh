@@ -52,7 +52,8 @@ old_cpu() {
     model=$1 suite="$1 agreement"
     shift
     check "runs $*, no other" offers "$model" "$*"
-    program "$model" facet-check qemu-x86_64 -cpu "$model" "$build/facet-check" --slow agreement
+    # What the model lacks is skipped as it should be.
+    program "$model" facet-check qemu-x86_64 -cpu "$model" "$build/facet-check" --slow agreement | grep -v '^skip '
 }
 
 offers() {

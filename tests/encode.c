@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- The curve ------------------------------------------------------------------------------------------------------ */
+/* ---- The curve --------------------------------------------------------------------------------------------------- */
 
 /* thresholds[c]: the least float whose byte is c: of at least the light that IEC 61966-2-1 encodes as (c - 1/2)/255. */
 static float thresholds[256];
@@ -79,7 +79,8 @@ static void check_sweep(void)
     static float light[3][WIDTH];
     static uint8_t pixels[4 * WIDTH];
     const uint32_t last = 0x40000000, step = test_slow_machine ? 12289 : 379;
-    const facet_image image = { .width = WIDTH, .height = 1, .radiance = { light[0], light[1], light[2] }, .pixels = pixels };
+    const facet_image image = { .width = WIDTH, .height = 1, .radiance = { light[0], light[1], light[2] },
+                                .pixels = pixels };
     int before[3] = { 0, 0, 0 };
 
     test("every %uth float from 0 to 2", step / 3);
@@ -106,28 +107,32 @@ static void check_specials(void)
     };
     test("NaN, negative, infinite");
     for (size_t i = 0; i < sizeof specials / sizeof specials[0]; i++)
-        expect(encode_one(specials[i].x) == specials[i].want, "%a is %d", (double)specials[i].x, encode_one(specials[i].x));
-    expect(encode_one(from_bits(0x7f800001)) == 0 && encode_one(from_bits(0xffbfffff)) == 0, "a signalling NaN is not 0");
+        expect(encode_one(specials[i].x) == specials[i].want, "%a is %d", (double)specials[i].x,
+               encode_one(specials[i].x));
+    expect(encode_one(from_bits(0x7f800001)) == 0, "a signalling NaN is not 0");
+    expect(encode_one(from_bits(0xffbfffff)) == 0, "a negative signalling NaN is not 0");
 }
 
 static void check_exposure(void)
 {
-    static const float exposures[] = { 0.0f, -0.0f, 1.0f, 0.5f, 3.0f, 0x1.4p-20f, 1e-30f, 1e30f, FLT_TRUE_MIN, FLT_MAX };
+    static const float exposures[] = { 0.0f, -0.0f, 1.0f, 0.5f, 3.0f, 0x1.4p-20f, 1e-30f, 1e30f, FLT_TRUE_MIN,
+                                       FLT_MAX };
     test_random r = { 2 };
     test("exposure multiplies before the curve; 0 is 1");
     for (size_t i = 0; i < sizeof exposures / sizeof exposures[0]; i++) {
         const float exposure = exposures[i], factor = exposure > 0 ? exposure : 1;
-        expect(encode_scaled(NAN, exposure) == 0 && encode_scaled(-1, exposure) == 0, "NaN or -1 is not 0 at %a", (double)exposure);
+        expect(encode_scaled(NAN, exposure) == 0, "NaN is not 0 at %a", (double)exposure);
+        expect(encode_scaled(-1, exposure) == 0, "-1 is not 0 at %a", (double)exposure);
         expect(encode_scaled(INFINITY, exposure) == 255, "infinity is not 255 at %a", (double)exposure);
         for (int k = 0; k < 2000; k++) {
             const float x = (float)random_unit(&r) / (k & 1 ? factor : 1), product = x * factor;
-            expect(encode_scaled(x, exposure) == byte_of(product), "%a times %a is %d, not %d", (double)x, (double)exposure,
-                   encode_scaled(x, exposure), byte_of(product));
+            const int got = encode_scaled(x, exposure), want = byte_of(product);
+            expect(got == want, "%a times %a is %d, not %d", (double)x, (double)exposure, got, want);
         }
     }
 }
 
-/* ---- Opacity -------------------------------------------------------------------------------------------------------- */
+/* ---- Opacity ----------------------------------------------------------------------------------------------------- */
 
 /* Nearest to 255 a, halves up, exactly: a float times 255 fits a double. */
 static int opacity_byte(float a)
@@ -145,27 +150,28 @@ static int encode_opacity(float a)
     return pixel[3];
 }
 
+static void check_opacity_of(float a)
+{
+    const int got = encode_opacity(a), want = opacity_byte(a);
+    expect(got == want, "%a is %d, not %d", (double)a, got, want);
+}
+
 static void check_opacity(void)
 {
-    static const float specials[] = { 0.0f, -0.0f, -1.0f, -INFINITY, NAN, FLT_TRUE_MIN, 1.0f, 0x1.fffffep-1f, 2.0f, INFINITY };
+    static const float specials[] = { 0.0f, -0.0f, -1.0f, -INFINITY, NAN, FLT_TRUE_MIN, 1.0f, 0x1.fffffep-1f, 2.0f,
+                                      INFINITY };
     test_random r = { 3 };
     test("opacity is rounded to nearest at every step");
     for (int c = 0; c < 255; c++) {
         float a = (float)((c + 0.5) / 255);
         for (int k = 0; k < 4; k++) a = nextafterf(a, 0);
-        for (int k = 0; k < 8; k++, a = nextafterf(a, 1))
-            expect(encode_opacity(a) == opacity_byte(a), "%a is %d, not %d", (double)a, encode_opacity(a), opacity_byte(a));
+        for (int k = 0; k < 8; k++, a = nextafterf(a, 1)) check_opacity_of(a);
     }
-    for (size_t i = 0; i < sizeof specials / sizeof specials[0]; i++)
-        expect(encode_opacity(specials[i]) == opacity_byte(specials[i]), "%a is %d", (double)specials[i],
-               encode_opacity(specials[i]));
-    for (int i = 0; i < 10000; i++) {
-        const float a = (float)random_unit(&r);
-        expect(encode_opacity(a) == opacity_byte(a), "%a is %d, not %d", (double)a, encode_opacity(a), opacity_byte(a));
-    }
+    for (size_t i = 0; i < sizeof specials / sizeof specials[0]; i++) check_opacity_of(specials[i]);
+    for (int i = 0; i < 10000; i++) check_opacity_of((float)random_unit(&r));
 }
 
-/* ---- Layout --------------------------------------------------------------------------------------------------------- */
+/* ---- Layout ------------------------------------------------------------------------------------------------------ */
 
 enum { MOST = 12, CANARY = 0xa5 };
 
@@ -179,8 +185,10 @@ static const float *at_end(const guarded *g, size_t count) { return (const float
 static void fill_random(test_random *r, places *p)
 {
     guarded *streams[] = { &p->light[0], &p->light[1], &p->light[2], &p->opacity };
-    for (int s = 0; s < 4; s++)
-        for (int i = 1; i <= MOST * MOST; i++) ((float *)(void *)streams[s]->end)[-i] = (float)random_unit(r) * 1.1f - 0.05f;
+    for (int s = 0; s < 4; s++) {
+        float *end = (float *)(void *)streams[s]->end;
+        for (int i = 1; i <= MOST * MOST; i++) end[-i] = (float)random_unit(r) * 1.1f - 0.05f;
+    }
     for (int i = 1; i <= MOST * MOST; i++) p->coverage.end[-i] = (uint8_t)random_u64(r);
     memset(p->pixels.first, CANARY, (size_t)(p->pixels.end - p->pixels.first));
 }
@@ -255,15 +263,15 @@ static void check_layouts(void)
         const facet_image *i = &l.image;
         const char *fault = fault_of(encode_layout, &l);
         expect(!fault, "%s: %zu by %zu, stride %zu, pitch %td", fault, i->width, i->height, i->stride, i->pitch);
-        expect(!memcmp(want, p.pixels.first, length), "%zu by %zu, stride %zu, pitch %td, opacity %d: other pixels", i->width,
-               i->height, i->stride, i->pitch, (int)i->opacity_from);
+        expect(!memcmp(want, p.pixels.first, length), "%zu by %zu, stride %zu, pitch %td, opacity %d: other pixels",
+               i->width, i->height, i->stride, i->pitch, (int)i->opacity_from);
     }
     free(want);
     guarded *all[] = { &p.light[0], &p.light[1], &p.light[2], &p.opacity, &p.coverage, &p.pixels };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) guarded_free(all[i]);
 }
 
-/* ---- Refusals ------------------------------------------------------------------------------------------------------- */
+/* ---- Refusals ---------------------------------------------------------------------------------------------------- */
 
 static void refuses(const char *change, const facet_image *image, facet_status code, const char *field, int index)
 {
@@ -309,7 +317,8 @@ static void check_refusals(void)
     expect(!memcmp(pixels, untouched, sizeof pixels), "pixels were written");
 
     facet_error error = { FACET_ERROR_NULL, "stale", 5 };
-    expect(facet_encode(&good, &error) == FACET_OK && error.code == FACET_OK && !error.field, "a success leaves an error");
+    expect(facet_encode(&good, &error) == FACET_OK, "a good image is refused");
+    expect(error.code == FACET_OK && !error.field && error.index == -1, "a success leaves an error");
 }
 
 void suite_encode(void)

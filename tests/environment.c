@@ -1,5 +1,5 @@
-/* The caller's floating-point environment: whatever it is, results are the same bytes, nothing traps, and it is as before
- * when the call returns. */
+/* The caller's floating-point environment: whatever it is, results are the same bytes, nothing traps, and it is as
+ * before when the call returns. */
 #include "cases.h"
 #include "golden.h"
 #include "guarded.h"
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- The machine's control and status register ----------------------------------------------------------------------- */
+/* ---- The machine's control and status register ------------------------------------------------------------------- */
 
 /* A setting replaces the bits of `field`. FLAGS: the sticky exception flags. */
 typedef struct { const char *name; uint64_t field, value; } setting;
@@ -136,7 +136,7 @@ static void write_register(uint64_t value) { (void)value; }
 
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 
-/* ---- Calls under a setting -------------------------------------------------------------------------------------------- */
+/* ---- Calls under a setting --------------------------------------------------------------------------------------- */
 
 typedef struct {
     const setting *under;
@@ -167,7 +167,8 @@ static const char *make_excursion(excursion *e)
     return fault;
 }
 
-/* Sums, products and quotients that the settings change: rounded each way, halves, subnormal, from subnormals, a NaN. */
+/* Sums, products and quotients that the settings change: rounded each way, halves, subnormal, from subnormals, a
+ * NaN. */
 typedef struct { float a, b; char operator; } arithmetic;
 
 static const arithmetic probes[] = {
@@ -194,7 +195,7 @@ static bool machine_obeys(const setting *s)
     return make_excursion(&e) || memcmp(usual, here, sizeof usual);
 }
 
-/* ---- What is called ----------------------------------------------------------------------------------------------------- */
+/* ---- What is called ---------------------------------------------------------------------------------------------- */
 
 enum { COUNT = 83, TEXT = 1024 };
 
@@ -285,15 +286,15 @@ static void connect(picture *p)
 
 static bool same_results(const picture *a, const picture *b)
 {
-    bool same = a->plan_status == b->plan_status && a->shade_status == b->shade_status && a->encode_status == b->encode_status
-        && a->invalid == b->invalid && !memcmp(&a->plan, &b->plan, sizeof a->plan)
-        && !memcmp(a->pixels, b->pixels, sizeof a->pixels);
+    bool same = a->plan_status == b->plan_status && a->shade_status == b->shade_status
+        && a->encode_status == b->encode_status && a->invalid == b->invalid
+        && !memcmp(&a->plan, &b->plan, sizeof a->plan) && !memcmp(a->pixels, b->pixels, sizeof a->pixels);
     for (int c = 0; c < 3; c++)
         same = same && !memcmp(a->samples.batch.radiance[c], b->samples.batch.radiance[c], COUNT * sizeof(float));
     return same;
 }
 
-/* ---- Tests ------------------------------------------------------------------------------------------------------------- */
+/* ---- Tests ------------------------------------------------------------------------------------------------------- */
 
 /* A call under a setting, with sticky flags set or none. */
 static void check_call(const char *name, void (*call)(void *), picture *p, const setting *s, uint64_t flags)

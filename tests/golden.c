@@ -1,4 +1,5 @@
-/* The bytes of strict results, one hash per kernel, against those committed in golden.txt: the same on every machine. */
+/* The bytes of strict results, one hash per kernel, against those committed in golden.txt: the same on every
+ * machine. */
 #include "golden.h"
 
 #include "cases.h"
@@ -120,7 +121,7 @@ sample golden_sample(test_random *r, bool edges)
     return s;
 }
 
-/* ---- Hashes ------------------------------------------------------------------------------------------------------- */
+/* ---- Hashes ------------------------------------------------------------------------------------------------------ */
 
 enum { COUNT = 1021, MATERIALS = 300, MATERIAL_SAMPLES = 5 };
 
@@ -258,7 +259,7 @@ static uint64_t hash_pixels(void)
     return hash;
 }
 
-/* ---- The committed file ------------------------------------------------------------------------------------------- */
+/* ---- The committed file ------------------------------------------------------------------------------------------ */
 
 typedef struct { char name[64]; uint64_t hash; } golden_row;
 enum { MOST_ROWS = 256 };
@@ -291,7 +292,7 @@ static bool write_committed(void)
     golden_path(path, sizeof path);
     FILE *file = fopen(path, "w");
     if (!file) return false;
-    fprintf(file, "# The bytes of strict results: FNV-1a of a kernel's radiance, the same on every machine and compiler.\n"
+    fprintf(file, "# The bytes of strict results, the same on every machine, from every compiler: FNV-1a hashes.\n"
                   "# Written by `facet-check --update golden`; what it hashes is in tests/golden.c.\n");
     for (int i = 0; i < case_count(); i++)
         fprintf(file, "%-52s %016" PRIx64 "\n", case_at(i)->name, hash_case(case_at(i), FACET_ARCH_SCALAR));
@@ -310,7 +311,7 @@ static void check_hash(const char *name, uint64_t hash)
     expect(false, "golden.txt has no such row; here it is %016" PRIx64, hash);
 }
 
-/* ---- Tests ----------------------------------------------------------------------------------------------------------- */
+/* ---- Tests ------------------------------------------------------------------------------------------------------- */
 
 /* A filtered build has rows for fewer kernels, and other materials in `plans`. */
 static bool whole_build(void)
@@ -325,7 +326,8 @@ static void check_rows(void)
 {
     test("every row of golden.txt is of a kernel");
     if (!whole_build()) skip("this build has fewer models");
-    else expect(committed_count == case_count() + 2, "%d rows for %d kernels, plans and pixels", committed_count, case_count());
+    else expect(committed_count == case_count() + 2, "%d rows for %d kernels, plans and pixels", committed_count,
+                case_count());
 }
 
 static void check_arch(facet_arch arch)

@@ -59,7 +59,7 @@ void guarded_free(guarded *g)
 
 #endif
 
-/* ---- Faults --------------------------------------------------------------------------------------------------------- */
+/* ---- Faults ------------------------------------------------------------------------------------------------------ */
 
 static const struct { int signal; const char *word; } faults[] = {
     { SIGSEGV, "SIGSEGV" }, { SIGBUS, "SIGBUS" }, { SIGFPE, "SIGFPE" }, { SIGILL, "SIGILL" },

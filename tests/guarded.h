@@ -7,8 +7,8 @@
 /* Whole pages: the bytes from `first` up to `end` can be used, those right before and right behind fault. */
 typedef struct { unsigned char *first, *end; } guarded;
 
-/* At least `bytes`; ends the program where there is no memory. Where the machine has no pages that can be guarded, the memory
- * is malloc's, which a sanitizer guards. */
+/* At least `bytes`; ends the program where there is no memory. Where the machine has no pages that can be guarded,
+ * the memory is malloc's, which a sanitizer guards. */
 guarded guarded_allocate(size_t bytes);
 void guarded_free(guarded *);
 

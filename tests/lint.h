@@ -1,6 +1,6 @@
-/* The vector layer, one lane, for `make HEADER.scalar=../tests/lint.h ARCHES=scalar`: scalar.h's numbers in vectors of one.
- * With scalar.h's own `typedef float vf`, a cast, a condition or a comparison compiles that on vectors means something else;
- * here it is an error. What compiles gives the bytes of every other layer. */
+/* The vector layer, one lane, for `make HEADER.scalar=../tests/lint.h ARCHES=scalar`: scalar.h's numbers in vectors
+ * of one. With scalar.h's own `typedef float vf`, a cast, a condition or a comparison compiles that on vectors means
+ * something else; here it is an error. What compiles gives the bytes of every other layer. */
 #ifndef TESTS_LINT_H
 #define TESTS_LINT_H
 

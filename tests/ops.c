@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- What each operation means ------------------------------------------------------------------------------------- */
+/* ---- What each operation means ----------------------------------------------------------------------------------- */
 
 static float from_bits(uint32_t bits)
 {
@@ -57,7 +57,7 @@ static const ops_table *const tables[][2] = {
 #include "arches.def"
 };
 
-/* ---- Operands ------------------------------------------------------------------------------------------------------- */
+/* ---- Operands ---------------------------------------------------------------------------------------------------- */
 
 static const uint32_t lattice[] = {
     0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x00400000, 0x007fffff, 0x807fffff, 0x00800000, 0x80800000,
@@ -77,7 +77,8 @@ static float around_one(test_random *r)
     return from_bits((bits & 0x807fffff) | (120 + (bits >> 23) % 16) << 23);
 }
 
-/* All triples of the lattice; random bit patterns; and c within some ulps of -a b or a b, where one rounding and two differ. */
+/* All triples of the lattice; random bit patterns; and c within some ulps of -a b or a b, where one rounding and two
+ * differ. */
 static operands make_operands(void)
 {
     const size_t triples = (size_t)LATTICE * LATTICE * LATTICE, random = test_slow_machine ? 4096 : 65536;
@@ -110,7 +111,7 @@ static bool same(float a, float b, bool exact)
     return to_bits(a) == to_bits(b) || (!exact && isnan(a) && isnan(b));
 }
 
-/* ---- Tests ---------------------------------------------------------------------------------------------------------- */
+/* ---- Tests ------------------------------------------------------------------------------------------------------- */
 
 /* The first lane, if any, where the outcome is not the meaning. */
 static bool find_difference(const operands *o, meaning *want, bool exact, size_t *at)
@@ -142,7 +143,8 @@ static bool fuses(const ops_table *table, int row, const operands *o)
     return find_difference(o, rows[row].plain, rows[row].exact, &i);
 }
 
-/* Every operation with its operands and its outcome at every offset from a vector's place; nothing beside is written. */
+/* Every operation with its operands and its outcome at every offset from a vector's place; nothing beside is
+ * written. */
 static void check_places(const ops_table *table, const operands *o)
 {
     const size_t count = (size_t)table->lanes * 2, operands_at = (size_t)LATTICE * LATTICE;
@@ -150,13 +152,14 @@ static void check_places(const ops_table *table, const operands *o)
     for (int row = 0; row < OPERATION_COUNT; row++)
         for (size_t from = 0; from <= 16; from++)
             for (size_t to = 0; to <= 16; to++) {
-                const float *a = o->a + operands_at + from, *b = o->b + operands_at + from, *c = o->c + operands_at + from;
+                const size_t at = operands_at + from;
+                const float *a = o->a + at, *b = o->b + at, *c = o->c + at;
                 float *all = o->out - MARGIN, want[32 * 2];
                 const size_t first = MARGIN + to, length = count + 2 * MARGIN;
                 for (size_t i = 0; i < length; i++) memcpy(&all[i], &canary, sizeof canary);
                 table->operations[row](a, b, c, all + first, count);
                 bool kept = true, right = true;
-                table->operations[row](o->a + operands_at + from, b, c, want, count);
+                table->operations[row](a, b, c, want, count);
                 for (size_t i = 0; i < length; i++) {
                     const bool inside = i >= first && i < first + count;
                     if (!inside) kept = kept && !memcmp(&all[i], &canary, sizeof canary);
@@ -173,7 +176,8 @@ static void check_target(facet_target target, const operands *o)
     const ops_table *table = tables[target.arch][target.tier];
     test("%s: %d operations over %zu lanes", words, OPERATION_COUNT, o->count);
     if (!expect(table, "not linked")) return;
-    expect(table->lanes == facet_arch_lanes(target.arch), "%d lanes, not %d", table->lanes, facet_arch_lanes(target.arch));
+    expect(table->lanes == facet_arch_lanes(target.arch), "%d lanes, not %d", table->lanes,
+           facet_arch_lanes(target.arch));
     for (int row = 0; row < OPERATION_COUNT; row++) check_operation(table, row, target.tier == FACET_TIER_STRICT, o);
 
     test("%s: both multiply-adds round alike", words);

@@ -4,7 +4,8 @@
 
 #include <stddef.h>
 
-/* Applies one operation to every lane of arrays of `count` floats, a multiple of the lanes. A mask comes out as 1 and 0. */
+/* Applies one operation to every lane of arrays of `count` floats, a multiple of the lanes. A mask comes out as 1
+ * and 0. */
 typedef void operation(const float *a, const float *b, const float *c, float *out, size_t count);
 
 /* The operations by their place in ops.def. */
@@ -19,7 +20,8 @@ typedef struct {
     operation *operations[OPERATION_COUNT];
 } ops_table;
 
-/* What a lane holds where an operation has done more or less than it should: bits beyond the lanes, lanes that differ. */
+/* What a lane holds where an operation has done more or less than it should: bits beyond the lanes, lanes that
+ * differ. */
 #define OPS_BROKEN -2.5f
 
 #endif

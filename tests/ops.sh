@@ -1,7 +1,7 @@
 #!/bin/sh
-# sh tests/ops.sh BUILD: compares the vector layers with tests/ops.def. Every header defines every operation of the list and no
-# other vf_ or vm_ function; what it has besides is its own, and the library does not use it. So an operation without a test
-# is not possible.
+# sh tests/ops.sh BUILD: compares the vector layers with tests/ops.def. Every header defines every operation of the list
+# and no other vf_ or vm_ function; what it has besides is its own, and the library does not use it. So an operation
+# without a test is not possible.
 cd "$(dirname "$0")/.." || exit 1
 build=${1:-build} suite=ops
 . tests/report.sh

@@ -23,8 +23,8 @@ static unsigned char *meeting(designer *d, int f, int level_f, int g, int level_
     return a < b ? &d->met[(size_t)a * MOST_PLACES + (size_t)b] : &d->met[(size_t)b * MOST_PLACES + (size_t)a];
 }
 
-/* The constraint with one more level chosen. False where nothing is left of some factor that counts: a level that asks for
- * it cannot be had. */
+/* The constraint with one more level chosen. False where nothing is left of some factor that counts: a level that asks
+ * for it cannot be had. */
 static bool choose(const designer *d, constraint *c, int factor, int level)
 {
     if (!(c->allowed[factor] >> level & 1)) return false;

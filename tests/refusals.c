@@ -20,7 +20,7 @@ static bool is_error(const facet_error *e, facet_status code, const char *field,
     return e->code == code && e->field && !strcmp(e->field, field) && e->index == index;
 }
 
-/* ---- Plans ---------------------------------------------------------------------------------------------------------- */
+/* ---- Plans ------------------------------------------------------------------------------------------------------- */
 
 static facet_material good_material(void)
 {
@@ -50,7 +50,8 @@ static void accepts_plan(const char *change, const facet_material *m, facet_targ
 {
     facet_plan plan;
     facet_error error = { FACET_ERROR_NULL, "stale", 7 };
-    expect(facet_plan_init(&plan, m, target, &error) == FACET_OK && error.code == FACET_OK && !error.field && error.index == -1,
+    const facet_status status = facet_plan_init(&plan, m, target, &error);
+    expect(status == FACET_OK && error.code == FACET_OK && !error.field && error.index == -1,
            "%s: status %d, %s[%d]", change, (int)error.code, error.field ? error.field : "NULL", error.index);
 }
 
@@ -96,7 +97,8 @@ static void test_numbers(void)
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++)
         for (int c = 0; c < numbers[i].components; c++) {
             const float least = numbers[i].least, most = numbers[i].most;
-            const float refused[] = { NAN, -NAN, INFINITY, -INFINITY, nextafterf(least, -INFINITY), nextafterf(most, INFINITY) };
+            const float refused[] = { NAN, -NAN, INFINITY, -INFINITY, nextafterf(least, -INFINITY),
+                                      nextafterf(most, INFINITY) };
             const char *field = numbers[i].field;
             for (size_t k = 0; k < sizeof refused / sizeof refused[0]; k++) {
                 facet_material m = with_number(numbers[i].at, c, refused[k]);
@@ -168,13 +170,13 @@ static void test_plan_pointers(void)
     facet_error error;
     const facet_material m = good_material();
     test("no plan, no material");
-    expect(facet_plan_init(NULL, &m, scalar, &error) == FACET_ERROR_NULL && is_error(&error, FACET_ERROR_NULL, "plan", -1),
-           "plan NULL: %d", (int)error.code);
+    const facet_status status = facet_plan_init(NULL, &m, scalar, &error);
+    expect(status == FACET_ERROR_NULL && is_error(&error, status, "plan", -1), "plan NULL: status %d", (int)status);
     expect(facet_plan_init(NULL, &m, scalar, NULL) == FACET_ERROR_NULL, "plan and error NULL");
     refuses_plan("material NULL", NULL, scalar, FACET_ERROR_NULL, "material", -1);
 }
 
-/* ---- Batches -------------------------------------------------------------------------------------------------------- */
+/* ---- Batches ----------------------------------------------------------------------------------------------------- */
 
 static float stream[COUNT], radiance[3][COUNT];
 static size_t invalid;
@@ -257,7 +259,8 @@ static void accepts_batch(const char *change, const facet_plan *plan, const face
 static void test_streams(void)
 {
     const facet_plan uniform = plan_with_streams(0), lambert = plan_lambert();
-    const facet_plan streams = plan_with_streams(FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALPHA | FACET_STREAM_F0);
+    const uint32_t all = FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALPHA | FACET_STREAM_F0;
+    const facet_plan streams = plan_with_streams(all);
 
     test("streams that are needed and not there");
     for (int c = 0; c < 3; c++) {
@@ -284,7 +287,8 @@ static void test_streams(void)
 
     test("view is needed by what depends on it");
     BATCH_ACCEPTS(&lambert, b.view[0] = b.view[1] = b.view[2] = NULL);
-    BATCH_REFUSES(&lambert, (b.view[0] = b.view[1] = b.view[2] = NULL, b.flags = FACET_TWO_SIDED), FACET_ERROR_NULL, "view", -1);
+    BATCH_REFUSES(&lambert, (b.view[0] = b.view[1] = b.view[2] = NULL, b.flags = FACET_TWO_SIDED), FACET_ERROR_NULL,
+                  "view", -1);
     BATCH_REFUSES(&uniform, b.view[0] = b.view[1] = b.view[2] = NULL, FACET_ERROR_NULL, "view", -1);
     for (int c = 0; c < 3; c++) BATCH_REFUSES(&lambert, b.view[c] = NULL, FACET_ERROR_NULL, "view", -1);
 }
