@@ -283,14 +283,7 @@ OP uint32_t add_constants(group *g, const job *j, float *const *radiance)
     return invalid;
 }
 
-/* Whether a component of the group is negative, infinite or NaN. */
-OP bool out_of_range(const group *g)
-{
-    uint32_t odd = 0;
-    EACH(k) odd |= vf_signs(above(largest(g->sum[k]), FLT_MAX));
-    return __builtin_expect(odd != 0, 0);
-}
-
+/* Writes the group, clamped to what radiance may be. */
 OP void store(const group *g, bool clamped, float *const *radiance)
 {
     EACH(k) {

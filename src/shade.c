@@ -52,32 +52,32 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
 {
     const plan_fields *p = j->plan;
     const bool view_needed = p->diffuse_view || p->distribution || b->flags & FACET_TWO_SIDED;
-    const uint32_t required = FACET_STREAM_NORMAL | (view_needed ? FACET_STREAM_VIEW : 0u) | p->promised;
+    uint32_t streams = FACET_STREAM_NORMAL | p->promised, uniform = b->uniform;
+    if (view_needed || !none_given(b->view)) streams |= FACET_STREAM_VIEW;
 
-    j->streams = FACET_STREAM_NORMAL | (p->promised & p->needed);
-    if (view_needed || !none_given(b->view)) j->streams |= FACET_STREAM_VIEW;
-    j->uniform = b->uniform;
-
-#define POINTERS_1(owner, field) (const float *const[]){ owner field }
-#define POINTERS_3(owner, field) (const float *const[]){ owner field[0], owner field[1], owner field[2] }
-#define NUMBERS_GEOMETRY(components, field) 0
-#define NUMBERS_MATERIAL(components, field) NUMBERS_##components(field)
-#define NUMBERS_1(field) &p->field
-#define NUMBERS_3(field) p->field
-#define FACET_STREAM(id, field, components, owner, ...) \
-    {                                                                                                                \
-        const float *const *stream = POINTERS_##components(b->, field);                                              \
-        const float *numbers = NUMBERS_##owner(components, field);                                                   \
-        facet_status status = (required | j->streams) & FACET_STREAM_##id                                            \
-            ? check_stream(stream, components, #field, -1, error) : FACET_OK;                                        \
-        if (status) return status;                                                                                   \
-        const bool theirs = !numbers || j->streams & FACET_STREAM_##id;                                              \
-        if (!theirs) j->uniform |= FACET_STREAM_##id;                                                                \
-        for (int c = 0; c < components; c++)                                                                         \
-            j->component[COMPONENT_##id + c] = theirs ? stream[c] : numbers + c;                                     \
+#define BATCH_1(field) &b->field
+#define BATCH_3(field) b->field
+#define PLAN_1(field) &p->field
+#define PLAN_3(field) p->field
+#define INSTEAD_GEOMETRY(id, field, components)                                                                       \
+    for (int c = 0; c < components; c++) j->component[COMPONENT_##id + c] = 0;                                       \
+    uniform &= ~(uint32_t)FACET_STREAM_##id;
+#define INSTEAD_MATERIAL(id, field, components)                                                                       \
+    for (int c = 0; c < components; c++) j->component[COMPONENT_##id + c] = PLAN_##components(field) + c;            \
+    uniform |= FACET_STREAM_##id;
+#define FACET_STREAM(id, field, components, owner, ...)                                                               \
+    if (streams & FACET_STREAM_##id) {                                                                               \
+        for (int c = 0; c < components; c++) {                                                                       \
+            const float *component = (BATCH_##components(field))[c];                                                 \
+            if (!component) return refuse(error, FACET_ERROR_NULL, #field, -1);                                      \
+            j->component[COMPONENT_##id + c] = component;                                                            \
+        }                                                                                                            \
+    } else {                                                                                                         \
+        INSTEAD_##owner(id, field, components)                                                                       \
     }
 #include "streams.def"
-    if (!(j->streams & FACET_STREAM_VIEW)) j->uniform &= ~(uint32_t)FACET_STREAM_VIEW;
+    j->streams = streams & (p->needed | FACET_STREAM_NORMAL | FACET_STREAM_VIEW);
+    j->uniform = uniform;
     return FACET_OK;
 }
 

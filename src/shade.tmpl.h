@@ -21,33 +21,28 @@ typedef struct {
 /* The bits of a vector's three components, together. */
 OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 
-/* Whether a sample of the group may need mending; errs on the side of yes: several components' bits together can look
- * like an infinity, but not while all are of magnitude below 2. Each check leaves a sign where something is wrong. A
- * plain batch's vectors need no look: what is not finite shows in the result, and a zero normal's result is 0. */
-OP bool needs_mending(const group *g, features x, const plan_fields *p)
+/* Leaves a sign where a sample of the group may need mending; errs on the side of yes: several components' bits together
+ * can look like an infinity, but not while all are of magnitude below 2. A plain batch's vectors need no look: what is
+ * not finite shows in the result, and a zero normal's result is 0. */
+OP vf odd_values(const group *g, features x, const plan_fields *p, int k)
 {
-    uint32_t odd = 0;
-    EACH(k) {
-        vf wrong = splat(0.0f), unit = splat(0.0f);
-        if (!x.plain) {
-            vf n = vf_abs(any_bits(LOAD3(g, NORMAL, k))), v = x.view ? vf_abs(any_bits(LOAD3(g, VIEW, k))) : n;
-            wrong = vf_or(below(n, FLT_TRUE_MIN), above(vf_or(n, v), FLT_MAX));
-        }
-        if (x.needed & FACET_STREAM_ALBEDO) {
-            vf albedo = any_bits(LOAD3(g, ALBEDO, k));
-            wrong = vf_or(wrong, x.plain ? albedo : above(albedo, FLT_MAX));
-        }
-        if (x.needed & FACET_STREAM_SIGMA) wrong = vf_or(wrong, above(LOAD(g, SIGMA, k), p->sigma_max));
-        if (x.needed & FACET_STREAM_F0) unit = largest(LOAD3(g, F0, k));
-        if (x.needed & FACET_STREAM_ALPHA) {
-            vf alpha = LOAD(g, ALPHA, k);
-            unit = vf_bits_max(unit, alpha);
-            wrong = vf_or(wrong, below(alpha, FACET_ALPHA_FLOOR));
-        }
-        wrong = vf_or(wrong, above(unit, 1.0f));
-        odd |= vf_signs(wrong);
+    vf odd = splat(0.0f), unit = splat(0.0f);
+    if (!x.plain) {
+        vf n = vf_abs(any_bits(LOAD3(g, NORMAL, k))), v = x.view ? vf_abs(any_bits(LOAD3(g, VIEW, k))) : n;
+        odd = vf_or(below(n, FLT_TRUE_MIN), above(vf_or(n, v), FLT_MAX));
     }
-    return odd != 0;
+    if (x.needed & FACET_STREAM_ALBEDO) {
+        vf albedo = any_bits(LOAD3(g, ALBEDO, k));
+        odd = vf_or(odd, x.plain ? albedo : above(albedo, FLT_MAX));
+    }
+    if (x.needed & FACET_STREAM_SIGMA) odd = vf_or(odd, above(LOAD(g, SIGMA, k), p->sigma_max));
+    if (x.needed & FACET_STREAM_F0) unit = largest(LOAD3(g, F0, k));
+    if (x.needed & FACET_STREAM_ALPHA) {
+        vf alpha = LOAD(g, ALPHA, k);
+        unit = vf_bits_max(unit, alpha);
+        odd = vf_or(odd, below(alpha, FACET_ALPHA_FLOOR));
+    }
+    return vf_or(odd, above(unit, 1.0f));
 }
 
 /* Shades the block's groups from `at` on, as long as they are whole, covered and in no need of mending. Returns where
@@ -58,17 +53,21 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
         if (((uint32_t)(b->covered >> at) & LANES(GROUP)) != LANES(GROUP)) break;
 
         float *const radiance[3] = { b->radiance[0] + at, b->radiance[1] + at, b->radiance[2] + at };
+        vf odd[K];
         group g;
         g.component = b->component;
         g.at = at;
-        if (!b->mended && needs_mending(&g, x, j->plan)) break;
+        EACH(k) odd[k] = odd_values(&g, x, j->plan, k);
         prepare(&g, x, j);
         const size_t lights = x.plain ? 1 : j->light_count;
         for (size_t light = 0; light < lights; light++) add_light(&g, x, j, &j->lights[light], b->i + at);
-        if (!x.plain) *invalid |= (uint64_t)add_constants(&g, j, radiance) << at;
-        const bool odd = out_of_range(&g);
-        if (x.plain && odd && !b->mended) break;
-        store(&g, odd, radiance);
+        const uint64_t bad = x.plain ? 0 : add_constants(&g, j, radiance);
+
+        uint32_t mend = 0;
+        EACH(k) mend |= vf_signs(vf_or(odd[k], above(largest(g.sum[k]), FLT_MAX)));
+        if (__builtin_expect(mend && !b->mended, 0)) break;
+        *invalid |= bad << at;
+        store(&g, b->mended, radiance);
     }
     return at;
 }

@@ -2,6 +2,7 @@
  * aliasing, pairwise: strict results are the scalar kernel's bytes, fast ones within their bound, and a sample's bytes
  * do not depend on its place. Nothing beside the batch is read or written. */
 #include "arrangement.h"
+#include "bits.h"
 #include "bounds.h"
 #include "harness.h"
 #include "pairwise.h"
@@ -104,13 +105,6 @@ static void shade(void *argument)
     c->status = facet_shade(c->plan, c->batch, NULL);
 }
 
-static uint32_t bits_of(const float *x)
-{
-    uint32_t bits;
-    memcpy(&bits, x, sizeof bits);
-    return bits;
-}
-
 /* The radiance of every sample against the samples alone; returns how many of the covered ones were invalid. */
 static size_t check_samples(const arrangement *a, const facet_batch *b, const facet_plan *alone,
                             const error_bound *bound)
@@ -125,9 +119,9 @@ static size_t check_samples(const arrangement *a, const facet_batch *b, const fa
         for (int c = 0; c < 3; c++) {
             const float *right = covered ? &want.radiance[c] : &a->values[RADIANCE_AT + c][i];
             memcpy(&got[c], &b->radiance[c][i], sizeof(float));
-            expect(bits_of(&got[c]) == bits_of(right),
+            expect(to_bits(got[c]) == to_bits(*right),
                    "sample %zu: radiance[%d] is %a (%08" PRIx32 "), %s %a (%08" PRIx32 "); %s", i, c, (double)got[c],
-                   bits_of(&got[c]), covered ? "alone" : "not covered, was", (double)*right, bits_of(right), a->words);
+                   to_bits(got[c]), covered ? "alone" : "not covered, was", (double)*right, to_bits(*right), a->words);
         }
         if (bound && covered && a->ordinary[i] && !want.invalid) check_bound(a, bound, i, got);
     }

@@ -1,5 +1,6 @@
 #include "arrangement.h"
 
+#include "bits.h"
 #include "samples.h"
 #include "targets.h"
 
@@ -147,7 +148,7 @@ factor_space arrangement_space(void)
 static guarded memory[COMPONENTS], coverage_memory;
 static arrangement now;
 
-#define CANARY 0x7fa5a5a5u       /* a NaN */
+#define CANARY 0x7fe5a5a5u       /* a NaN */
 
 int component_of(int stream, int light)
 {
@@ -247,13 +248,10 @@ static void draw_uniform_edges(test_random *r)
 /* What stands in the destination: a radiance to add to, or a NaN that must not be read. */
 static void draw_destination(test_random *r)
 {
-    static const uint32_t canary = CANARY;
     for (int c = 0; c < 3; c++)
-        for (size_t i = 0; i < MOST_COUNT; i++) {
-            float *to = &now.values[RADIANCE_AT + c][i];
-            if (now.flags & FACET_ACCUMULATE) *to = (float)random_unit(r) * 2 - 0.25f;
-            else memcpy(to, &canary, sizeof *to);
-        }
+        for (size_t i = 0; i < MOST_COUNT; i++)
+            now.values[RADIANCE_AT + c][i] =
+                now.flags & FACET_ACCUMULATE ? (float)random_unit(r) * 2 - 0.25f : from_bits(CANARY);
 }
 
 /* Negative in one case out of four, which is as 0. */
@@ -441,8 +439,7 @@ const arrangement *arrange(const design *d, int number)
 
 static void fill_with_canaries(float *a, size_t count)
 {
-    static const uint32_t canary = CANARY;
-    for (size_t i = 0; i < count; i++) memcpy(&a[i], &canary, sizeof canary);
+    for (size_t i = 0; i < count; i++) a[i] = from_bits(CANARY);
 }
 
 static size_t length_of(int component)
@@ -472,9 +469,8 @@ static bool is_radiance(const arrangement *a, const float *place)
 
 static bool canaries_live(const float *from, const float *to)
 {
-    static const uint32_t canary = CANARY;
     for (; from < to; from++)
-        if (memcmp(from, &canary, sizeof canary)) return false;
+        if (to_bits(*from) != CANARY) return false;
     return true;
 }
 

@@ -1,4 +1,5 @@
 /* facet_encode: every step of the sRGB curve at its exact float, opacity, layout, refusals. */
+#include "bits.h"
 #include "guarded.h"
 #include "harness.h"
 
@@ -63,13 +64,6 @@ static void check_thresholds(void)
         expect(encode_one(x) == c, "%a is %d, not %d", (double)x, encode_one(x), c);
         expect(encode_one(below) == c - 1, "%a is %d, not %d", (double)below, encode_one(below), c - 1);
     }
-}
-
-static float from_bits(uint32_t bits)
-{
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
 }
 
 /* Rises through the floats from 0 to beyond 1, three channels apart. */

@@ -2,6 +2,7 @@
  * machine. */
 #include "golden.h"
 
+#include "bits.h"
 #include "cases.h"
 #include "samples.h"
 #include "targets.h"
@@ -98,7 +99,7 @@ static void edge(test_random *r, float *x)
         0x3effffff, 0x3f7fffff, 0x3f800000, 0x3f800001, 0x40000000, 0x4f800000, 0x5f800000, 0x7f7fffff, 0xff7fffff,
         0xbf800000, 0x7f800000, 0xff800000, 0x7fc00000, 0xffc01234,
     };
-    memcpy(x, &bits[random_u64(r) % (sizeof bits / sizeof bits[0])], sizeof *x);
+    *x = from_bits(bits[random_u64(r) % (sizeof bits / sizeof bits[0])]);
 }
 
 sample golden_sample(test_random *r, bool edges)
@@ -137,8 +138,7 @@ static uint64_t hash_byte(uint64_t hash, unsigned byte)
 static uint64_t hash_floats(uint64_t hash, const float *a, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
-        uint32_t bits;
-        memcpy(&bits, &a[i], sizeof bits);
+        const uint32_t bits = to_bits(a[i]);
         for (int shift = 24; shift >= 0; shift -= 8) hash = hash_byte(hash, bits >> shift & 0xff);
     }
     return hash;
@@ -312,15 +312,6 @@ static void check_hash(const char *name, uint64_t hash)
 }
 
 /* ---- Tests ------------------------------------------------------------------------------------------------------- */
-
-/* A filtered build has rows for fewer kernels, and other materials in `plans`. */
-static bool whole_build(void)
-{
-    for (int kind = FACET_KIND_DIFFUSE; kind <= FACET_KIND_FRESNEL; kind++)
-        for (int value = 0; facet_word((facet_kind)kind, value); value++)
-            if (!facet_has((facet_kind)kind, value)) return false;
-    return true;
-}
 
 static void check_rows(void)
 {

@@ -1,4 +1,5 @@
 /* Every operation of every vector layer in this build against plain C, exactly (ops.def). */
+#include "bits.h"
 #include "harness.h"
 #include "ops.h"
 #include "targets.h"
@@ -9,20 +10,6 @@
 #include <string.h>
 
 /* ---- What each operation means ----------------------------------------------------------------------------------- */
-
-static float from_bits(uint32_t bits)
-{
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static uint32_t to_bits(float x)
-{
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
 
 #define OPERATION(name, shape, meaning)                                                                               \
     static float mean_##name(float a, float b, float c)                                                              \

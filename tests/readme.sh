@@ -28,24 +28,26 @@ tables() {
     diff README.md "$work/README.md" || { echo "make readme mends it"; return 1; }
 }
 
-# Every `make WORD ...` of a code block or of `code`.
+# Every `make WORD ...`, in lines of code and in `code`.
 commands() {
     "$make" -pn help | sed -n 's/^\.PHONY: *//p' | tr ' ' '\n' >"$work/targets"
-    awk '/^```/ { block = !block; next } block { print; next } { n = split($0, part, "`"); for (i = 2; i <= n; i += 2) print part[i] }' \
-        README.md | grep -oE '\<make( +[A-Za-z_.=$/-]+| +[A-Z]+="[^"]*")*' >"$work/commands"
+    awk '/^```/ { fenced = !fenced; next }
+        fenced || /^    / { sub(/ # .*/, ""); print; next }
+        { n = split($0, part, "`"); for (i = 2; i <= n; i += 2) print part[i] }' README.md |
+        sed -nE 's/ +$//; s/^ *(make( .*)?)$/\1/p' >"$work/commands"
     grep -qx 'make demo' "$work/commands"
     grep -qx 'make deps check' "$work/commands"
-    none "no such target" \
-        "$(sed 's/[A-Z]*="[^"]*"//g' "$work/commands" | tr ' ' '\n' | grep -vE '^make$|=|^-|^$' | grep -vxFf "$work/targets")"
+    none "no such target" "$(sed -E 's/[A-Z]+=("[^"]*"|[^ ]*)//g' "$work/commands" | tr ' ' '\n' | grep -vxE 'make|' |
+        grep -vxFf "$work/targets")"
 }
 
-# Links to files, and `paths` into the tree.
+# Links to files, and `paths` into the tree, where NAME is anything.
 files() {
     { grep -oE '\]\([^)#]+' README.md | sed 's/^](//' | grep -vE '^[a-z]+:'
       grep -oE '`(src|arch|bench|tests)/[A-Za-z0-9_./*-]*`' README.md | tr -d '`'; } | sort -u >"$work/files"
-    while read -r file; do
+    sed 's/NAME/*/' "$work/files" | while read -r file; do
         ls -d $file >/dev/null 2>&1 || echo "$file"
-    done <"$work/files" >"$work/missing"
+    done >"$work/missing"
     none "not there" "$(cat "$work/missing")"
 }
 

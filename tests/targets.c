@@ -35,6 +35,14 @@ const char *target_words(facet_target target)
     return words;
 }
 
+bool whole_build(void)
+{
+    for (int kind = FACET_KIND_DIFFUSE; kind <= FACET_KIND_FRESNEL; kind++)
+        for (int value = 0; facet_word((facet_kind)kind, value); value++)
+            if (!facet_has((facet_kind)kind, value)) return false;
+    return true;
+}
+
 void skip_absent_targets(void)
 {
     for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
