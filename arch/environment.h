@@ -27,7 +27,7 @@ typedef uint32_t environment;
         __asm__ volatile("msr fpcr, %0" : : "r"((r) & 0xffffffffu) : "memory");                                       \
         __asm__ volatile("msr fpsr, %0" : : "r"((r) >> 32) : "memory");                                               \
     } while (0)
-#define ENVIRONMENT_CONTROL  UINT64_C(0x07ff9f00)
+#define ENVIRONMENT_CONTROL  UINT64_C(0x07ff9f07)
 #define ENVIRONMENT_WANTED   UINT64_C(0)
 typedef uint64_t environment;
 #elif defined(__arm__) && defined(__ARM_FP)

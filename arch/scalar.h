@@ -39,13 +39,13 @@ OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
 
 /* On the bits: the one of a and b whose bits, as an unsigned number, are larger (negatives, infinities and NaN beat
  * all); the bits of a less those of b; the bits of both. vf_signs: bit k is the sign of lane k. */
-typedef union { float f; uint32_t u; } vf_bits;
-OP uint32_t vf_bits_of(vf a) { return ((vf_bits){ .f = a }).u; }
-OP vf vf_from_bits(uint32_t u) { return ((vf_bits){ .u = u }).f; }
-OP vf vf_bits_max(vf a, vf b) { return vf_bits_of(a) > vf_bits_of(b) ? a : b; }
-OP vf vf_bits_minus(vf a, vf b) { return vf_from_bits(vf_bits_of(a) - vf_bits_of(b)); }
-OP vf vf_or(vf a, vf b) { return vf_from_bits(vf_bits_of(a) | vf_bits_of(b)); }
-OP uint32_t vf_signs(vf a) { return vf_bits_of(a) >> 31; }
+typedef union { float f; uint32_t u; } float_bits;
+OP uint32_t bits_of(vf a) { return ((float_bits){ .f = a }).u; }
+OP vf from_bits(uint32_t u) { return ((float_bits){ .u = u }).f; }
+OP vf vf_bits_max(vf a, vf b) { return bits_of(a) > bits_of(b) ? a : b; }
+OP vf vf_bits_minus(vf a, vf b) { return from_bits(bits_of(a) - bits_of(b)); }
+OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
+OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }

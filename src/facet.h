@@ -289,7 +289,9 @@ typedef struct facet_image {
  * Refuses malformed arguments before anything is written. */
 static inline facet_status facet_encode(const facet_image *image, facet_error *error);
 
-/* ---- What the inline functions above call: sizes travel with the call, so that structs can grow ------------------ */
+/* ---- What the inline functions above call: sizes travel with the call, so that structs can grow ------------------
+ * A smaller struct, of an older header, reads as if it went on with zeros; a larger one is refused where what this library
+ * does not know is not zero. Lights stand in an array, and must have this library's size. */
 
 FACET_API facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const facet_material *material,
                                              size_t material_size, facet_target target, facet_error *error);

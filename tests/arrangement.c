@@ -379,11 +379,13 @@ facet_batch point_batch(const arrangement *a, float *const *at, facet_light *lig
 static void describe(const design *d)
 {
     const int *level = d->level;
-    size_t end = (size_t)snprintf(now.words, sizeof now.words,
-                                  "%s, %zu samples, %d lights, flags %u, coverage %d, in place %d, added %d, edges %d%s;",
-                                  now.kernel->name, now.count, now.lights, (unsigned)now.flags, level[FACTOR_COVERAGE],
-                                  level[FACTOR_IN_PLACE], level[FACTOR_ADDED], level[FACTOR_EDGES],
-                                  now.counted ? ", counted" : "");
+    int length = snprintf(now.words, sizeof now.words, "%s, %zu samples, %d lights, flags %u, coverage %d, in place %d, ",
+                          now.kernel->name, now.count, now.lights, (unsigned)now.flags, level[FACTOR_COVERAGE],
+                          level[FACTOR_IN_PLACE]);
+    size_t end = (size_t)length;
+    length = snprintf(now.words + end, sizeof now.words - end, "added %d, edges %d%s;", level[FACTOR_ADDED],
+                      level[FACTOR_EDGES], now.counted ? ", counted" : "");
+    end += (size_t)length;
     for (int s = 0; s < INPUTS && end < sizeof now.words; s++)
         if (level[FACTOR_SOURCE + s] >= 0)
             end += (size_t)snprintf(now.words + end, sizeof now.words - end, " %s %d@%d", inputs[s].name,

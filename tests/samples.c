@@ -87,7 +87,8 @@ static vec mirrored(test_random *r, vec n, vec v, double alpha)
 static void random_directions(test_random *r, int kind, sample *s)
 {
     const vec z = { 0, 0, 1 };
-    store(s->n, direction(z, between(r, -1, 1), between(r, 0, 2 * PI)));
+    const double longitude = between(r, 0, 2 * PI), height = between(r, -1, 1);
+    store(s->n, direction(z, height, longitude));
     const vec n = vec_of(s->n);
     const double azimuth = between(r, 0, 2 * PI);
     double nl = between(r, 0, 1), nv = between(r, 0, 1), turn = between(r, 0, 2 * PI);
