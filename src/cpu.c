@@ -47,7 +47,7 @@ static bool runs(facet_arch arch, unsigned features)
     return arch_built(arch) && (features & needed[arch]) == needed[arch];
 }
 
-bool arch_runs(facet_arch arch)
+bool facet_arch_runs(facet_arch arch)
 {
     return runs(arch, arch == FACET_ARCH_SCALAR ? 0 : cpu_features());
 }

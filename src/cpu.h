@@ -11,6 +11,6 @@ static inline bool arch_built(facet_arch arch)
 }
 
 /* In this build and on this CPU. */
-bool arch_runs(facet_arch arch);
+bool facet_arch_runs(facet_arch arch);
 
 #endif

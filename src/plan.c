@@ -100,7 +100,7 @@ static facet_status resolve_target(facet_target *target, facet_error *error)
     if (status) return status;
     if (!facet_word(FACET_KIND_ARCH, (int)target->arch)) return refuse(error, FACET_ERROR_ENUM, "target.arch", -1);
     if (target->arch == FACET_ARCH_BEST) target->arch = facet_arch_best();
-    else if (!arch_runs(target->arch)) return refuse(error, FACET_ERROR_ARCH, "target.arch", -1);
+    else if (!facet_arch_runs(target->arch)) return refuse(error, FACET_ERROR_ARCH, "target.arch", -1);
     return FACET_OK;
 }
 
