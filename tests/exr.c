@@ -25,13 +25,13 @@ static bool __attribute__((format(printf, 2, 3))) fail(char why[EXR_WHY], const 
 /* ---- OpenEXRCore's errors, memory, input and output -------------------------------------------------------------- */
 
 /* What the callbacks see of one file. */
-typedef struct session {
+typedef struct transfer {
     char *why;
     int input;                     /* the file being read */
     unsigned char *bytes;          /* the file being written */
     size_t size, room;
     bool no_room;
-} session;
+} transfer;
 
 /* A call's first complaint is the precise one; what follows it is consequences. */
 static void keep_message(exr_const_context_t context, exr_result_t code, const char *message)
@@ -40,7 +40,7 @@ static void keep_message(exr_const_context_t context, exr_result_t code, const c
     (void)code;
     if (!context || exr_get_user_data(context, &data) || !data)
         return;
-    session *s = data;
+    transfer *s = data;
     if (!*s->why)
         fail(s->why, "%s", message);
 }
@@ -49,7 +49,7 @@ static int64_t get_size(exr_const_context_t context, void *data)
 {
     struct stat status;
     (void)context;
-    return fstat(((session *)data)->input, &status) ? -1 : status.st_size;
+    return fstat(((transfer *)data)->input, &status) ? -1 : status.st_size;
 }
 
 static int64_t get(exr_const_context_t context, void *data, void *to, uint64_t size, uint64_t offset,
@@ -58,7 +58,7 @@ static int64_t get(exr_const_context_t context, void *data, void *to, uint64_t s
     uint64_t done = 0;
     (void)context, (void)error;
     while (done < size) {
-        ssize_t got = pread(((session *)data)->input, (char *)to + done, size - done, (off_t)(offset + done));
+        ssize_t got = pread(((transfer *)data)->input, (char *)to + done, size - done, (off_t)(offset + done));
         if (got < 0)
             return -1;
         if (!got)
@@ -74,7 +74,7 @@ static void *allocate(size_t size)
     return size <= ALLOCATION_MAX ? malloc(size) : NULL;
 }
 
-static bool grow(session *s, size_t size)
+static bool grow(transfer *s, size_t size)
 {
     if (size <= s->room)
         return true;
@@ -91,7 +91,7 @@ static bool grow(session *s, size_t size)
 static int64_t put(exr_const_context_t context, void *data, const void *from, uint64_t size, uint64_t offset,
                    exr_stream_error_func_ptr_t error)
 {
-    session *s = data;
+    transfer *s = data;
     (void)context, (void)error;
     if (s->no_room || !grow(s, offset + size)) {
         s->no_room = true;
@@ -104,7 +104,7 @@ static int64_t put(exr_const_context_t context, void *data, const void *from, ui
     return (int64_t)size;
 }
 
-static exr_context_initializer_t initializer(session *s)
+static exr_context_initializer_t initializer(transfer *s)
 {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.error_handler_fn = keep_message;
@@ -373,7 +373,7 @@ static int open_input(const char *path, char why[EXR_WHY])
 
 bool exr_load(const char *path, exr_frame *frame, exr_layer *layers, int count, char why[EXR_WHY])
 {
-    session s = {.why = why, .input = open_input(path, why)};
+    transfer s = {.why = why, .input = open_input(path, why)};
     reader r = {.why = why, .frame = frame, .layers = layers, .count = count};
     exr_context_initializer_t setup = initializer(&s);
     for (int i = 0; i < count; i++)
@@ -448,7 +448,7 @@ static bool write_image(exr_context_t file, const exr_frame *frame, float *const
 }
 
 /* The whole file, in memory. */
-static bool encode(session *s, const exr_frame *frame, float *const rgb[3])
+static bool encode(transfer *s, const exr_frame *frame, float *const rgb[3])
 {
     exr_context_initializer_t setup = initializer(s);
     exr_context_t file = NULL;
@@ -460,7 +460,7 @@ static bool encode(session *s, const exr_frame *frame, float *const rgb[3])
     return !s->no_room || fail(s->why, "not enough memory");
 }
 
-static bool write_bytes(const char *path, const session *s)
+static bool write_bytes(const char *path, const transfer *s)
 {
     FILE *file = fopen(path, "wb");
     if (!file)
@@ -474,7 +474,7 @@ static bool write_bytes(const char *path, const session *s)
     return wrote || fail(s->why, "%s", strerror(error));
 }
 
-static bool replace_file(const char *path, const session *s)
+static bool replace_file(const char *path, const transfer *s)
 {
     size_t size = strlen(path) + 32;
     char *temporary = malloc(size);
@@ -490,7 +490,7 @@ static bool replace_file(const char *path, const session *s)
     return wrote;
 }
 
-static bool write_to(const char *path, const session *s)
+static bool write_to(const char *path, const transfer *s)
 {
     struct stat status;
     if (stat(path, &status))
@@ -505,7 +505,7 @@ static bool write_to(const char *path, const session *s)
 
 bool exr_save(const char *path, const exr_frame *frame, float *const rgb[3], char why[EXR_WHY])
 {
-    session s = {.why = why};
+    transfer s = {.why = why};
     *why = 0;
     bool saved = encode(&s, frame, rgb) && write_to(path, &s);
     free(s.bytes);
