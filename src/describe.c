@@ -109,7 +109,7 @@ static void describe_specular(writer *w, const plan_fields *p)
         if (p->needed & FACET_STREAM_F0) {
             put_parameter(w, p, FACET_STREAM_F0, ", f0", p->f0, 3);
             if (p->derived_f0) put(w, " (from eta and k)");
-            if (p->fresnel == FACET_FRESNEL_SCHLICK) put_numbers(w, ", f90", &p->f90, 1);
+            if (p->needs_f90) put_numbers(w, ", f90", &p->f90, 1);
         }
     }
     put(w, "\n");
@@ -145,6 +145,8 @@ size_t facet_plan_describe(const facet_plan *plan, char *text, size_t size)
 size_t facet_error_describe(const facet_error *error, char *text, size_t size)
 {
     writer w = { text, size, 0 };
+    const facet_error none = { FACET_OK, 0, -1 };
+    if (!error) error = &none;
     if (error->field) {
         put(&w, error->field);
         if (error->index >= 0) {

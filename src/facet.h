@@ -62,7 +62,8 @@ typedef struct facet_error {
 } facet_error;
 
 /* Writes a line such as "light.irradiance[3]: a number is NaN, infinite or outside its domain" as snprintf does:
- * at most `size` bytes with the final 0, returns the length without it. `text` may be NULL where `size` is 0. */
+ * at most `size` bytes with the final 0, returns the length without it. `text` may be NULL where `size` is 0, `error`
+ * where there was none. */
 FACET_API size_t facet_error_describe(const facet_error *error, char *text, size_t size);
 
 /* ---- Models and targets ---------------------------------------------------------------------------------------- */
@@ -177,7 +178,7 @@ typedef struct facet_material {
 #define FACET_ALPHA_FLOOR 1e-4f
 
 /* A material compiled for a target. Plain bytes without pointers: copy it, compare it with memcmp, keep it in flash.
- * It belongs to the machine kind and the library version that made it. */
+ * It belongs to the library version that made it and runs only on CPUs that have facet_plan_target's architecture. */
 typedef struct facet_plan {
     uint64_t opaque[32];
 } facet_plan;
@@ -191,7 +192,7 @@ static inline facet_status facet_plan_init(facet_plan *plan, const facet_materia
  * the length without it. `text` may be NULL where `size` is 0. Returns 0 for what is not a plan. */
 FACET_API size_t facet_plan_describe(const facet_plan *plan, char *text, size_t size);
 
-/* What the plan was compiled for, with FACET_ARCH_BEST resolved. */
+/* What the plan was compiled for, with FACET_ARCH_BEST resolved; FACET_ARCH_BEST itself for what is not a plan. */
 FACET_API facet_target facet_plan_target(const facet_plan *plan);
 
 /* ---- Shading --------------------------------------------------------------------------------------------------- */
@@ -228,7 +229,8 @@ enum {
  *   coverage       a bit a sample, least significant first, (count + 7)/8 bytes; NULL: all. Samples not covered are
  *                  neither counted nor written.
  *   radiance       may be one of the inputs, exactly; never a partial overlap.
- *   invalid        NULL, or raised by the number of covered samples that were not finite or had no normal. */
+ *   invalid        NULL, or raised by the number of covered samples that were not finite or had no normal. Counting
+ *                  takes the generic kernel where a specialised one would do (README, Speed). */
 typedef struct facet_batch {
     size_t count;
     const float *normal[3], *view[3];
@@ -245,7 +247,8 @@ typedef struct facet_batch {
 
 /* Shades `batch` by `plan`: radiance = sum over lights of f nl E, + albedo/pi ambient + emission.
  *
- * Refuses malformed arguments alone, before anything is written; data never fails. A sample's bytes depend on nothing
+ * Refuses malformed arguments alone, before anything is written, by status (NULL, VALUE, ENUM, PLAN, SIZE) and field in
+ * `*error` (may be NULL); data never fails. A sample's bytes depend on nothing
  * but its own values: not on its place, the count, the alignment or its neighbours. Results for special samples, where
  * the first row that applies holds:
  *   NaN or infinity in a value that is read, or n = 0      0, and counted in `invalid`
@@ -270,8 +273,8 @@ typedef enum facet_opacity {
  *   opacity_from   where each pixel's fourth byte comes from.
  *   opacity        a stream laid out as radiance.
  *   coverage       a bit a sample, least significant first; sample x of row y is bit y stride + x.
- *   pixels         rows of width bytes-quadruples R, G, B, A, `pitch` bytes apart (0: 4 width); a negative pitch with
- *                  `pixels` at the last row's place in memory turns the picture upside down. */
+ *   pixels         rows of width quadruples of bytes R, G, B, A, `pitch` bytes apart (0: 4 width); a negative pitch
+ *                  with `pixels` at the last row's place in memory turns the picture upside down. */
 typedef struct facet_image {
     size_t width, height;
     const float *radiance[3];
@@ -286,12 +289,12 @@ typedef struct facet_image {
 
 /* Encodes radiance times exposure (white is 1) by IEC 61966-2-1, correctly rounded: every byte is the one nearest to
  * the exact curve. NaN and negative give 0, 1 and above 255. Opacity is not premultiplied. The same bytes everywhere.
- * Refuses malformed arguments before anything is written. */
+ * Refuses malformed arguments (NULL, VALUE, ENUM, SIZE; `error` may be NULL) before anything is written. */
 static inline facet_status facet_encode(const facet_image *image, facet_error *error);
 
 /* ---- What the inline functions above call: sizes travel with the call, so that structs can grow ------------------
- * A smaller struct, of an older header, reads as if it went on with zeros; a larger one is refused where what this library
- * does not know is not zero. Lights stand in an array, and must have this library's size. */
+ * A smaller struct, of an older header, reads as if it went on with zeros; a larger one is refused where what this
+ * library does not know is not zero. Lights stand in an array, and must have this library's size. */
 
 FACET_API facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const facet_material *material,
                                              size_t material_size, facet_target target, facet_error *error);

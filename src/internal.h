@@ -26,7 +26,7 @@
 #endif
 
 /* Properties of a model (models.def). */
-enum { VIEW = 1, TERMS = 2, F0 = 4, RECIPROCAL = 8, CONSERVES = 16 };
+enum { VIEW = 1, TERMS = 2, F0 = 4, F90 = 8, RECIPROCAL = 16, CONSERVES = 32 };
 
 /* The rows of models.def by name. */
 enum {
@@ -62,14 +62,15 @@ enum visibility {
     VISIBILITY_NONE
 };
 
-enum { ARCH_COUNT = FACET_ARCH_NEON + 1, TIER_COUNT = FACET_TIER_STRICT + 1 };
-
-/* The streams of streams.def, and their components: COMPONENT_NORMAL is the place of the normal's x. */
+/* Architectures with FACET_ARCH_BEST, and tiers. */
 enum {
-#define FACET_STREAM(id, ...) STREAM_##id,
-#include "streams.def"
-    STREAM_COUNT
+    ARCH_COUNT = 1
+#define FACET_ARCH(...) + 1
+#include "arches.def"
+    , TIER_COUNT = FACET_TIER_STRICT + 1
 };
+
+/* The components of the streams of streams.def: COMPONENT_NORMAL is the place of the normal's x. */
 enum {
 #define FACET_STREAM(id, field, components, ...)                                                                      \
     COMPONENT_##id, COMPONENT_##id##_LAST = COMPONENT_##id + components - 1,
@@ -83,8 +84,7 @@ typedef struct __attribute__((may_alias)) plan_fields {
     uint8_t arch, tier;                  /* the kernel's id */
     uint8_t diffuse, distribution, masking, visibility, fresnel;
     uint8_t coupled, clamped_alpha, derived_f0;
-    uint8_t diffuse_view;                /* the diffuse model depends on v */
-    uint8_t unused;
+    uint8_t needs_view, needs_f90;
     uint32_t promised, needed;           /* FACET_STREAM_*: of the material's; read by the kernel */
     float albedo[3], sigma, sigma_max, terms[2];   /* terms: A and B over pi */
     float alpha;

@@ -14,6 +14,10 @@ static const struct { float sigma_max; int properties; } diffuse_rows[] = {
 #define FACET_DIFFUSE(id, name, word, sigma_max, properties, title) [FACET_DIFFUSE_##id] = { sigma_max, properties },
 #include "models.def"
 };
+static const int distribution_properties[] = {
+#define FACET_DISTRIBUTION(id, name, word, properties, title) [FACET_DISTRIBUTION_##id] = properties,
+#include "models.def"
+};
 static const int fresnel_properties[] = {
 #define FACET_FRESNEL(id, name, word, properties, title) [FACET_FRESNEL_##id] = properties,
 #include "models.def"
@@ -107,7 +111,8 @@ static facet_status resolve_target(facet_target *target, facet_error *error)
 /* ((eta - eta_outside)2 + k2)/((eta + eta_outside)2 + k2), without overflow. */
 static float f0_of(float eta, float k, float eta_outside)
 {
-    float sum = eta + eta_outside, r = (eta - eta_outside) / sum, x = vf_min(k / sum, 1e18f);
+    float half = 0.5f * eta + 0.5f * eta_outside, r = (0.5f * eta - 0.5f * eta_outside) / half;
+    float x = vf_min(0.5f * k / half, 1e18f);
     return (r * r + x * x) / (1.0f + x * x);
 }
 
@@ -119,7 +124,7 @@ static void compile_diffuse(plan_fields *p, const facet_material *m)
     p->diffuse = (uint8_t)m->diffuse.model;
     if (m->diffuse.model == FACET_DIFFUSE_NONE) return;
 
-    p->diffuse_view = properties & VIEW ? 1 : 0;
+    if (properties & VIEW) p->needs_view = 1;
     p->needed |= FACET_STREAM_ALBEDO;
     if (!(p->promised & FACET_STREAM_ALBEDO)) store3(p->albedo, not_negative3(splat3(m->diffuse.albedo)));
     if (!(properties & TERMS)) return;
@@ -150,6 +155,7 @@ static void compile_specular(plan_fields *p, const facet_material *m)
     p->visibility = (uint8_t)find_visibility((int)m->specular.masking, (int)m->specular.model);
     p->fresnel = (uint8_t)m->fresnel.model;
     p->coupled = m->coupled;
+    if (distribution_properties[m->specular.model] & VIEW) p->needs_view = 1;
     p->needed |= FACET_STREAM_ALPHA;
     if (!(p->promised & FACET_STREAM_ALPHA)) {
         p->alpha = clamp(m->specular.alpha, FACET_ALPHA_FLOOR, 1.0f);
@@ -157,6 +163,7 @@ static void compile_specular(plan_fields *p, const facet_material *m)
     }
     if (!(fresnel_properties[m->fresnel.model] & F0)) return;
 
+    p->needs_f90 = fresnel_properties[m->fresnel.model] & F90 ? 1 : 0;
     p->needed |= FACET_STREAM_F0;
     p->f90 = m->fresnel.f90 == 0.0f ? 1.0f : clamp(m->fresnel.f90, 0.0f, 1.0f);
     if (p->promised & FACET_STREAM_F0) return;
@@ -208,5 +215,6 @@ facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const fac
 facet_target facet_plan_target(const facet_plan *opaque)
 {
     const plan_fields *p = (const plan_fields *)opaque;
+    if (!p || !plan_valid(p)) return (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST };
     return (facet_target){ (facet_arch)p->arch, (facet_tier)p->tier };
 }

@@ -31,7 +31,7 @@ static facet_status check_light(const facet_light *light, int index, bool *speci
     if (light->kind != FACET_LIGHT_DIRECTIONAL) return refuse(error, FACET_ERROR_ENUM, "light.kind", index);
 
     const float *E = light->irradiance;
-    if (light->direction_of[0] || light->irradiance_of[0] || light->visibility
+    if (light->kind != FACET_LIGHT_DIRECTIONAL || light->direction_of[0] || light->irradiance_of[0] || light->visibility
         || E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f)
         *special = true;
 
@@ -51,7 +51,8 @@ static facet_status check_light(const facet_light *light, int index, bool *speci
 static facet_status gather_streams(job *j, const facet_batch *b, facet_error *error)
 {
     const plan_fields *p = j->plan;
-    const bool view_needed = p->diffuse_view || p->distribution || b->flags & FACET_TWO_SIDED;
+    const bool view_needed = p->needs_view || b->flags & FACET_TWO_SIDED;
+    const uint32_t read = p->needed | FACET_STREAM_NORMAL | FACET_STREAM_VIEW;
     uint32_t streams = FACET_STREAM_NORMAL | p->promised, uniform = b->uniform;
     if (view_needed || !none_given(b->view)) streams |= FACET_STREAM_VIEW;
 
@@ -72,11 +73,12 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
             if (!component) return refuse(error, FACET_ERROR_NULL, #field, -1);                                      \
             j->component[COMPONENT_##id + c] = component;                                                            \
         }                                                                                                            \
-    } else {                                                                                                         \
+    }                                                                                                                \
+    if (!(streams & read & FACET_STREAM_##id)) {                                                                     \
         INSTEAD_##owner(id, field, components)                                                                       \
     }
 #include "streams.def"
-    j->streams = streams & (p->needed | FACET_STREAM_NORMAL | FACET_STREAM_VIEW);
+    j->streams = streams & read;
     j->uniform = uniform;
     return FACET_OK;
 }

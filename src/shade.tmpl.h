@@ -21,9 +21,9 @@ typedef struct {
 /* The bits of a vector's three components, together. */
 OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 
-/* Leaves a sign where a sample of the group may need mending; errs on the side of yes: several components' bits together
- * can look like an infinity, but not while all are of magnitude below 2. A plain batch's vectors need no look: what is
- * not finite shows in the result, and a zero normal's result is 0. */
+/* Leaves a sign where a sample of the group may need mending; errs on the side of yes: several components' bits
+ * together can look like an infinity, but not while all are of magnitude below 2. A plain batch's vectors need no look:
+ * what is not finite shows in the result, and a zero normal's result is 0. */
 OP vf odd_values(const group *g, features x, const plan_fields *p, int k)
 {
     vf odd = splat(0.0f), unit = splat(0.0f);

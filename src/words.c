@@ -39,7 +39,7 @@ static const row status_rows[] = {
     [FACET_ERROR_SIZE] = { "a struct of a newer header uses what this library does not know", true },
 };
 
-/* Every enumerator has a row: the highest index is the rows' number less one. (-Wswitch finds one missing at the end.) */
+/* Every enumerator has a row: the highest index is their number less one. (-Wswitch finds one missing at the end.) */
 #define COUNT(rows) (sizeof rows / sizeof rows[0])
 _Static_assert(COUNT(diffuse_rows) == DIFFUSE_ROWS && COUNT(distribution_rows) == DISTRIBUTION_ROWS
                && COUNT(masking_rows) == MASKING_ROWS && COUNT(fresnel_rows) == FRESNEL_ROWS, "models.def lacks a row");

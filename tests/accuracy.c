@@ -85,9 +85,10 @@ static double measure_p999(const kernel_case *kernel, facet_tier tier)
 {
     enum { COUNT = 200 * MOST_MEASURED };
     static double errors[COUNT];
+    const int count = test_slow_machine ? COUNT / 4 : COUNT;
     const kernel_set set = kernels_of(kernel, tier, 0, tier == FACET_TIER_STRICT);
     test_random random = { 2 };
-    for (int at = 0; at < COUNT; at += MOST_MEASURED) {
+    for (int at = 0; at < count; at += MOST_MEASURED) {
         sample samples[MOST_MEASURED];
         measurement results[MOST_MEASURED];
         for (int i = 0; i < MOST_MEASURED; i++)
@@ -95,8 +96,8 @@ static double measure_p999(const kernel_case *kernel, facet_tier tier)
         measure(&set, samples, MOST_MEASURED, results);
         for (int i = 0; i < MOST_MEASURED; i++) errors[at + i] = results[i].error;
     }
-    qsort(errors, COUNT, sizeof errors[0], by_size);
-    return errors[COUNT - COUNT / 1000];
+    qsort(errors, (size_t)count, sizeof errors[0], by_size);
+    return errors[count - count / 1000];
 }
 
 /* ---- The tests of a kernel --------------------------------------------------------------------------------------- */
@@ -134,12 +135,11 @@ static void check_tight(const kernel_case *kernel, const accuracy_row *row, cons
 static void check_p999(const kernel_case *kernel, const accuracy_row *row)
 {
     test("%s, %s, p99.9", kernel->name, tier_word(row->tier));
-    if (test_slow_machine) {
-        skip("a slow machine");
-        return;
-    }
     const double p999 = measure_p999(kernel, row->tier), limit = row->bound.p999;
-    expect(p999 <= limit && p999 >= tight * limit, "%.3g, in the table %.3g", p999, limit);
+    expect(p999 <= limit, "%.3g, in the table %.3g", p999, limit);
+    if (p999 >= tight * limit) return;
+    if (shows_the_worst(row->tier)) expect(false, "%.3g, in the table %.3g", p999, limit);
+    else skip("%.3g here, in the table %.3g", p999, limit);
 }
 
 /* The bound holds whatever Schlick's f90 is. */

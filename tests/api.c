@@ -8,6 +8,7 @@
 #include "targets.h"
 
 #include <limits.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -421,6 +422,31 @@ static void test_lights_in_passes(void)
     skip_absent_targets();
 }
 
+/* A promised stream that the models do not read: whatever it holds, samples are as they would be without it. */
+static void test_unread_streams(void)
+{
+    enum { COUNT = 67 };
+    static const float odd[] = { NAN, -1, 0.5f, INFINITY, 2, 0 };
+    float unread[COUNT], one[COUNT], zero[COUNT] = { 0 }, radiance[3][COUNT];
+    for (int i = 0; i < COUNT; i++) unread[i] = odd[i % 6], one[i] = 1;
+    const facet_material glow = { .emission = { 1, 2, 3 }, .streams = ALL_STREAMS };
+    for (int i = 0; i < target_count(); i++) {
+        test("streams that no model reads change nothing, %s", target_words(target_at(i)));
+        facet_plan plan;
+        size_t invalid = 0;
+        expect(facet_plan_init(&plan, &glow, target_at(i), NULL) == FACET_OK, "no plan");
+        const facet_batch b = {
+            .count = COUNT, .normal = { zero, zero, one }, .albedo = { unread, unread, unread }, .sigma = unread,
+            .alpha = unread, .f0 = { unread, unread, unread }, .ambient = { 3, 3, 3 },
+            .radiance = { radiance[0], radiance[1], radiance[2] }, .invalid = &invalid,
+        };
+        expect(facet_shade(&plan, &b, NULL) == FACET_OK && invalid == 0, "%zu are invalid", invalid);
+        for (int k = 0; k < 3 * COUNT; k++)
+            expect(radiance[k / COUNT][k % COUNT] == glow.emission[k / COUNT], "sample %d is %a", k % COUNT,
+                   (double)radiance[k / COUNT][k % COUNT]);
+    }
+}
+
 static void test_empty(void)
 {
     sample_batch b = random_batch(8, 7);
@@ -504,6 +530,7 @@ void suite_api(void)
     test_batch_sizes();
     test_image_sizes();
     test_lights_in_passes();
+    test_unread_streams();
     test_empty();
     test("one plan in %d threads at once, the same batch", THREADS);
     check_threads(true);

@@ -6,7 +6,7 @@
 
 #define FACET_PI_2 0x1.921fb6p0f
 
-enum { VIEW = 1, TERMS = 2, F0 = 4, RECIPROCAL = 8, CONSERVES = 16 };
+enum { VIEW = 1, TERMS = 2, F0 = 4, F90 = 8, RECIPROCAL = 16, CONSERVES = 32 };
 
 typedef struct { int id; const char *word; float sigma_max; int properties; } row;
 typedef struct { int masking, distribution, properties; } pair;

@@ -43,7 +43,8 @@ compiled() {
 # The scalar kernel over vectors of one lane, where a cast or a comparison meant for floats does not compile.
 linted() {
     dir=$build/cross/lint-$1
-    compiles "lint $1" "$dir" CC="$1" CFLAGS='-O2 -Werror' HEADER.scalar=../tests/lint.h ARCHES=scalar "$dir/facet-check" &&
+    compiles "lint $1" "$dir" CC="$1" CFLAGS='-O2 -Werror' HEADER.scalar=../tests/lint.h ARCHES=scalar \
+        "$dir/facet-check" &&
         program "lint $1" facet-check "$dir/facet-check" --slow golden
 }
 

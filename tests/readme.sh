@@ -12,7 +12,8 @@ mkdir -p "$work"
 examples() {
     awk -v work="$work" '
         /^```c$/ { inside = 1; block = ""; next }
-        /^```/ { if (inside && block ~ /#include [<"]facet\.h[>"]/) printf "%s", block >(work "/example" ++n ".c"); inside = 0 }
+        /^```/ && inside && block ~ /#include [<"]facet\.h[>"]/ { printf "%s", block >(work "/example" ++n ".c") }
+        /^```/ { inside = 0 }
         inside { block = block $0 "\n" }' README.md
 }
 

@@ -1,5 +1,6 @@
 /* readme-tables README [ARCH=FLAGS ...]: prints README with its tables made anew from models.def, streams.def and
- * arches.def. A table stands between the lines <!-- NAME --> and <!-- /NAME -->. FLAGS: an architecture's compiler flags. */
+ * arches.def. A table stands between the lines <!-- NAME --> and <!-- /NAME -->. FLAGS: the architecture's, of the
+ * compiler. */
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -18,10 +19,10 @@ static const char *diffuse_parameters(const char *word, const char *sigma_max)
     return strcmp(sigma_max, "0.0f") ? "`albedo`, `sigma`" : "`albedo`";
 }
 
-static const char *fresnel_parameters(const char *properties, const char *title)
+static const char *fresnel_parameters(const char *properties)
 {
     if (!strstr(properties, "F0")) return "";
-    return strstr(title, "F90") ? "`f0` or `eta` and `k`, `f90`" : "`f0` or `eta` and `k`";
+    return strstr(properties, "F90") ? "`f0` or `eta` and `k`, `f90`" : "`f0` or `eta` and `k`";
 }
 
 static void models(void)
@@ -33,7 +34,7 @@ static void models(void)
     model(word, "FACET_DISTRIBUTION_" #id, "distribution", title, strcmp(word, "none") ? "`alpha`" : "");
 #define FACET_MASKING(id, name, word, title) model(word, "FACET_MASKING_" #id, "masking", title, "");
 #define FACET_FRESNEL(id, name, word, properties, title)                                                              \
-    model(word, "FACET_FRESNEL_" #id, "Fresnel", title, fresnel_parameters(#properties, title));
+    model(word, "FACET_FRESNEL_" #id, "Fresnel", title, fresnel_parameters(#properties));
 #include "../src/models.def"
 }
 

@@ -1,8 +1,8 @@
 #!/bin/sh
-# sh tests/run.sh BUILD: every test that this machine can run; with $RUN, an emulator, what runs there. Prints a line for
-# a suite's passed tests, every failure and every skipped test; BUILD/check.log has all. The last line counts.
+# sh tests/run.sh BUILD: every test that this machine can run; with $RUN, an emulator, what runs there. Prints a line
+# for a suite's passed tests, every failure and every skipped test; BUILD/check.log has all. The last line counts.
 cd "$(dirname "$0")/.." || exit 1
-build=${1:-build} suite=run
+build=${1:-build} suite=programs
 . tests/report.sh
 log=$build/check.log
 export RUN FACET_SLOW=${RUN:+1}
@@ -21,9 +21,11 @@ sanitizers() {
     flags='-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer'
     check "builds" make_in "$build/asan" CFLAGS="$flags" "$build/asan/facet-check" "$build/asan/facet-demo"
     [ $failures = 0 ] || return
-    program sanitizers facet-check "$build/asan/facet-check" --slow
-    # Time and memory limits are skipped here; without sanitizers they are tested, or skipped by name.
-    program sanitizers demo env FACET_SLOW=1 sh tests/demo.sh "$build/asan" | grep -v '^skip '
+    # What takes too long or too much memory is skipped; without sanitizers it is tested, or skipped by name.
+    {
+        program sanitizers facet-check "$build/asan/facet-check" --slow
+        program sanitizers demo env FACET_SLOW=1 sh tests/demo.sh "$build/asan"
+    } | grep -v '^skip '
 }
 
 everything() {
@@ -44,7 +46,7 @@ everything() {
 
 # Of what everything prints: failures and skips as they are, passed tests counted by suite.
 shorten() {
-    suite_shown= passed=0
+    suite_shown='' passed=0
     while IFS= read -r line; do
         echo "$line" >&3
         case $line in
@@ -53,10 +55,7 @@ shorten() {
             [ "$line" = "$suite_shown" ] || passed_line
             suite_shown=$line passed=$((passed + 1))
             ;;
-        "FAIL "* | "skip "*)
-            passed_line
-            echo "$line"
-            ;;
+        "FAIL "* | "skip "*) echo "$line" ;;
         esac
     done 3>"$log"
     passed_line
@@ -72,6 +71,7 @@ counted() {
 }
 
 { everything; echo "that was everything"; } 2>&1 | shorten
-tail -n 1 "$log" | grep -qx "that was everything" || echo "FAIL run: runs to its end: it stopped half-way" | tee -a "$log"
+tail -n 1 "$log" | grep -qx "that was everything" ||
+    echo "FAIL programs: run to the end: stopped half-way" | tee -a "$log"
 echo "$(counted ok) passed, $(counted FAIL) failed, $(counted skip) skipped" | tee -a "$log"
 [ "$(counted ok)" -gt 0 ] && [ "$(counted FAIL)" = 0 ]
