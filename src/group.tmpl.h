@@ -77,11 +77,14 @@ OP void prepare(group *g, features x, const job *j)
     EACH(k) {
         g->is_finite[k] = splat(0.0f);
         g->sum[k] = ZERO3;
-        g->terms[k] = (terms){ splat(p->terms[0]), splat(p->terms[1]) };
         g->nv[k] = splat(1.0f);
     }
     if (x.view) EACH(k) g->nv[k] = dot(LOAD3(g, NORMAL, k), LOAD3(g, VIEW, k));
-    if (!(j->streams & FACET_STREAM_SIGMA)) return;
+    if (!(j->streams & FACET_STREAM_SIGMA)) {
+        EACH(k) g->terms[k] = (terms){ splat(p->terms[0]), splat(p->terms[1]) };
+        return;
+    }
+    EACH(k) g->terms[k] = terms_none(splat(0.0f));
     switch (x.diffuse) {
 #define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                   \
     case FACET_DIFFUSE_##id:                                                                                         \

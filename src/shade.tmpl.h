@@ -9,6 +9,9 @@ _Static_assert(BLOCK % GROUP == 0 && BLOCK % 8 == 0 && BLOCK <= 64, "a bit a sam
 
 /* ---- A block: groups in a row ------------------------------------------------------------------------------------ */
 
+/* A bit for each of 1 <= n <= 64 samples. */
+#define ALL_SAMPLES(n) (~(uint64_t)0 >> (64 - (n)))
+
 /* Up to BLOCK samples of a batch, or one group that was mended. */
 typedef struct {
     const float *component[COMPONENT_COUNT];
@@ -45,13 +48,20 @@ OP vf odd_values(const group *g, features x, const plan_fields *p, int k)
     return vf_or(odd, above(unit, 1.0f));
 }
 
+/* Where the samples from `at` on cease to be covered. */
+OP size_t covered_end(const block *b, size_t at)
+{
+    if (b->covered == ALL_SAMPLES(b->count)) return b->count;
+    while (at < b->count && b->covered >> at & 1) at++;
+    return at;
+}
+
 /* Shades the block's groups from `at` on, as long as they are whole, covered and in no need of mending. Returns where
  * it stopped; sets in *invalid the bits of the samples that a light or the destination made invalid. */
 OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint64_t *invalid)
 {
-    for (; at + GROUP <= b->count; at += GROUP) {
-        if (((uint32_t)(b->covered >> at) & LANES(GROUP)) != LANES(GROUP)) break;
-
+    const size_t end = covered_end(b, at);
+    for (; at + GROUP <= end; at += GROUP) {
         float *const radiance[3] = { b->radiance[0] + at, b->radiance[1] + at, b->radiance[2] + at };
         vf odd[K];
         group g;
@@ -191,11 +201,10 @@ static __attribute__((noinline)) uint32_t shade_mended(const job *j, const block
 /* A block's coverage; reads no byte past the batch's. */
 OP uint64_t covered_samples(const job *j, size_t i, size_t count)
 {
-    const uint64_t all = ~(uint64_t)0 >> (64 - count);
-    if (!j->coverage) return all;
+    if (!j->coverage) return ALL_SAMPLES(count);
     uint64_t bits = 0;
     for (size_t k = 0; k < count; k += 8) bits |= (uint64_t)j->coverage[(i + k) >> 3] << k;
-    return bits & all;
+    return bits & ALL_SAMPLES(count);
 }
 
 typedef float block_values[COMPONENT_COUNT][BLOCK];
