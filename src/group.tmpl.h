@@ -271,7 +271,7 @@ OP uint32_t add_constants(group *g, const job *j, float *const *radiance)
         }
     if (j->flags & FACET_ACCUMULATE)
         EACH(k) {
-            const int at = k * VF_LANES;
+            const size_t at = g->at + (size_t)k * VF_LANES;
             vf3 before = { vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) };
             g->is_finite[k] = g->is_finite[k] + (before.x - before.x) + (before.y - before.y) + (before.z - before.z);
             g->sum[k] = add3(g->sum[k], not_negative3(before));
@@ -293,9 +293,10 @@ OP void store(const group *g, bool clamped, float *const *radiance)
         vf3 out = g->sum[k];
         if (clamped)
             out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
-        vf_store(radiance[0] + k * VF_LANES, out.x);
-        vf_store(radiance[1] + k * VF_LANES, out.y);
-        vf_store(radiance[2] + k * VF_LANES, out.z);
+        const size_t at = g->at + (size_t)k * VF_LANES;
+        vf_store(radiance[0] + at, out.x);
+        vf_store(radiance[1] + at, out.y);
+        vf_store(radiance[2] + at, out.z);
     }
 }
 

@@ -62,7 +62,6 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
 {
     const size_t end = covered_end(b, at);
     for (; at + GROUP <= end; at += GROUP) {
-        float *const radiance[3] = { b->radiance[0] + at, b->radiance[1] + at, b->radiance[2] + at };
         vf odd[K];
         group g;
         g.component = b->component;
@@ -71,13 +70,13 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
         prepare(&g, x, j);
         const size_t lights = x.plain ? 1 : j->light_count;
         for (size_t light = 0; light < lights; light++) add_light(&g, x, j, &j->lights[light], b->i + at);
-        const uint64_t bad = x.plain ? 0 : add_constants(&g, j, radiance);
+        const uint64_t bad = x.plain ? 0 : add_constants(&g, j, b->radiance);
 
         uint32_t mend = 0;
         EACH(k) mend |= vf_signs(vf_or(odd[k], above(largest(g.sum[k]), FLT_MAX)));
         if (__builtin_expect(mend && !b->mended, 0)) break;
         *invalid |= bad << at;
-        store(&g, b->mended, radiance);
+        store(&g, b->mended, b->radiance);
     }
     return at;
 }

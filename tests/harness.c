@@ -10,11 +10,12 @@ const char *test_data = "tests";
 
 static const char *suite_name;
 static char test_name[256], failure[512], skipped[256];
-static int failures;
+static int failures, tests;
 
 static void finish_test(void)
 {
     if (!test_name[0]) return;
+    tests++;
     if (failure[0]) {
         printf("FAIL %s: %s: %s\n", suite_name, test_name, failure);
         failures++;
@@ -78,7 +79,12 @@ static bool run_suite(const char *name)
         if (name && strcmp(name, suites[i].name)) continue;
         found = true;
         suite_name = suites[i].name;
+        const int before = tests;
         suites[i].run();
+        finish_test();
+        if (tests > before) continue;
+        test("has tests");
+        expect(false, "it ran none");
         finish_test();
     }
     return found;
