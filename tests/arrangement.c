@@ -58,12 +58,6 @@ static int tested_count(int level)
     return test_slow_machine ? counts_for_slow_machines[level] : counts[level];
 }
 
-static bool needs_view(const kernel_case *k)
-{
-    return k->material.specular.model != FACET_DISTRIBUTION_NONE
-        || (k->material.diffuse.model != FACET_DIFFUSE_NONE && k->material.diffuse.model != FACET_DIFFUSE_LAMBERT);
-}
-
 /* The kernels that read a stream of the material; that need no view. */
 static uint64_t cases_with(uint32_t stream)
 {
@@ -77,7 +71,7 @@ static uint64_t cases_without_view(void)
 {
     uint64_t mask = 0;
     for (int i = 0; i < case_count(); i++)
-        if (!needs_view(case_at(i))) mask |= (uint64_t)1 << i;
+        if (!case_at(i)->view) mask |= (uint64_t)1 << i;
     return mask;
 }
 

@@ -108,6 +108,7 @@ static void add_case(const row *diffuse, const pair *specular, const row *fresne
     if (diffuse) add_diffuse(&c, diffuse);
     if (specular) add_specular(&c, specular, fresnel);
     c.conserves = !(diffuse && specular) && (diffuse ? diffuse->properties : specular->properties) & CONSERVES;
+    c.view = specular || (diffuse && diffuse->properties & VIEW);
     keep(c, diffuse, specular, fresnel);
 }
 

@@ -10,6 +10,7 @@ typedef struct {
     facet_material material; /* models and `coupled` alone; parameters are zero, streams none */
     uint32_t streams;        /* FACET_STREAM_ALBEDO … that the models read */
     float sigma_max;         /* domain of sigma: [0, sigma_max]; 0: none */
+    bool view;               /* depends on v */
     bool reciprocal, conserves;
 } kernel_case;
 
