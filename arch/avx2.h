@@ -45,7 +45,6 @@ OP uint32_t vf_signs(vf a) { return (uint32_t)_mm256_movemask_ps(a); }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm256_cmp_ps(a, b, _CMP_LT_OQ) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm256_cmp_ps(a, b, _CMP_EQ_OQ) }; }
-OP vm vm_and(vm a, vm b) { return (vm){ _mm256_and_ps(a.m, b.m) }; }
 OP vf vf_select(vm m, vf a, vf b) { return _mm256_blendv_ps(b, a, m.m); }
 OP vf vf_where(vm m, vf a) { return _mm256_and_ps(m.m, a); }
 OP uint32_t vm_bits(vm m) { return (uint32_t)_mm256_movemask_ps(m.m); }

@@ -45,7 +45,6 @@ OP uint32_t vf_signs(vf a) { return _mm512_movepi32_mask(_mm512_castps_si512(a))
 
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ) }; }
-OP vm vm_and(vm a, vm b) { return (vm){ (__mmask16)(a.m & b.m) }; }
 OP vf vf_select(vm m, vf a, vf b) { return _mm512_mask_blend_ps(m.m, b, a); }
 OP vf vf_where(vm m, vf a) { return _mm512_maskz_mov_ps(m.m, a); }
 OP uint32_t vm_bits(vm m) { return m.m; }

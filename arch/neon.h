@@ -57,7 +57,6 @@ OP uint32_t vf_signs(vf a)
 
 OP vm vf_lt(vf a, vf b) { return (vm){ vcltq_f32(a, b) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ vceqq_f32(a, b) }; }
-OP vm vm_and(vm a, vm b) { return (vm){ vandq_u32(a.m, b.m) }; }
 OP vf vf_select(vm m, vf a, vf b) { return vbslq_f32(m.m, a, b); }
 OP vf vf_where(vm m, vf a) { return vreinterpretq_f32_u32(vandq_u32(m.m, vreinterpretq_u32_f32(a))); }
 OP uint32_t vm_bits(vm m)

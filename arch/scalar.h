@@ -49,7 +49,6 @@ OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }
-OP vm vm_and(vm a, vm b) { return (vm){ a.m & b.m }; }
 
 /* m ? a : b, and m ? a : +0. */
 OP vf vf_select(vm m, vf a, vf b) { return m.m ? a : b; }

@@ -43,7 +43,6 @@ OP uint32_t vf_signs(vf a) { return (uint32_t)_mm_movemask_ps(a); }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm_cmplt_ps(a, b) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm_cmpeq_ps(a, b) }; }
-OP vm vm_and(vm a, vm b) { return (vm){ _mm_and_ps(a.m, b.m) }; }
 #ifdef __SSE4_1__
 OP vf vf_select(vm m, vf a, vf b) { return _mm_blendv_ps(b, a, m.m); }
 #else

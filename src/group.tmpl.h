@@ -89,7 +89,7 @@ OP void prepare(group *g, features x, const job *j)
 #define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                   \
     case FACET_DIFFUSE_##id:                                                                                         \
         if (FACET_HAS(name) && ((properties) & TERMS))                                                               \
-            EACH(k) g->terms[k] = terms_##name(LOAD(g, SIGMA, k));                                        \
+            EACH(k) g->terms[k] = terms_##name(LOAD(g, SIGMA, k));                                                   \
         break;
 #include "models.def"
     }

@@ -2,7 +2,7 @@
  * Included after arch/NAME.h, with KERNEL defined as the function's name. */
 #include "group.tmpl.h"
 
-/* Samples in a block: special cases are looked for, and mended, a block at a time. */
+/* Samples in a block: pointers and coverage are set up a block at a time. A uniform value fills a block of its own. */
 #define BLOCK (VF_LANES > 1 ? 64 : 16)
 
 _Static_assert(BLOCK % GROUP == 0 && BLOCK % 8 == 0 && BLOCK <= 64, "a bit a sample of a block fits into a uint64_t");

@@ -37,7 +37,6 @@ OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }
-OP vm vm_and(vm a, vm b) { return (vm){ a.m & b.m }; }
 OP vf vf_select(vm m, vf a, vf b) { return m.m[0] ? a : b; }
 OP vf vf_where(vm m, vf a) { return m.m[0] ? a : (vf){ 0.0f }; }
 OP uint32_t vm_bits(vm m) { return m.m[0] ? 1 : 0; }
