@@ -65,12 +65,14 @@ static void put_numbers(writer *w, const char *name, const float *a, int count)
     }
 }
 
-/* A parameter: its numbers, or where they come from. */
+/* A parameter that the models or other parameters are made of: its numbers, or where they come from. */
 static void put_parameter(writer *w, const plan_fields *p, uint32_t stream, const char *name, const float *a, int count)
 {
-    if (p->promised & stream) {
+    if (!((p->needed | p->sources) & stream)) return;
+    put(w, ", ");
+    if (p->promised & stream || p->derived & stream) {
         put(w, name);
-        put(w, " per sample");
+        put(w, p->promised & stream ? " per sample" : " made per sample");
     } else {
         put_numbers(w, name, a, count);
     }
@@ -82,17 +84,45 @@ static size_t finish(writer *w)
     return w->length;
 }
 
+static void describe_convention(writer *w, const plan_fields *p)
+{
+    if (p->convention == FACET_CONVENTION_DIRECT) return;
+    put(w, "convention: ");
+    put(w, facet_word(FACET_KIND_CONVENTION, p->convention));
+    put_parameter(w, p, FACET_STREAM_BASE, "base", p->base, 3);
+    put_parameter(w, p, FACET_STREAM_METALLIC, "metallic", &p->metallic, 1);
+    put_parameter(w, p, FACET_STREAM_ROUGHNESS, "roughness", &p->roughness, 1);
+    put_parameter(w, p, FACET_STREAM_SPECULAR_LEVEL, "specular level", &p->specular_level, 1);
+    put_parameter(w, p, FACET_STREAM_GLOSSINESS, "glossiness", &p->glossiness, 1);
+    put(w, "\n");
+}
+
 static void describe_diffuse(writer *w, const plan_fields *p)
 {
     put(w, "diffuse: ");
     put(w, facet_word(FACET_KIND_DIFFUSE, p->diffuse));
-    if (p->needed & FACET_STREAM_ALBEDO) put_parameter(w, p, FACET_STREAM_ALBEDO, ", albedo", p->albedo, 3);
-    if (p->needed & FACET_STREAM_SIGMA) {
-        put_parameter(w, p, FACET_STREAM_SIGMA, ", sigma", &p->sigma, 1);
-        if (p->promised & FACET_STREAM_SIGMA) put(w, ", A and B per sample");
-        else put_numbers(w, ", A and B", (float[]){ p->terms[0] / INV_PI, p->terms[1] / INV_PI }, 2);
-    }
+    put_parameter(w, p, FACET_STREAM_ALBEDO, "albedo", p->albedo, 3);
+    put_parameter(w, p, FACET_STREAM_SIGMA, "sigma", &p->sigma, 1);
+    if (p->needed & FACET_STREAM_SIGMA && !(p->promised & FACET_STREAM_SIGMA))
+        put_numbers(w, ", A and B", (float[]){ p->terms[0] / INV_PI, p->terms[1] / INV_PI }, 2);
     put(w, "\n");
+}
+
+static void describe_fresnel(writer *w, const plan_fields *p)
+{
+    put(w, ", Fresnel ");
+    put(w, facet_word(FACET_KIND_FRESNEL, p->fresnel));
+    put_parameter(w, p, FACET_STREAM_F0, "f0", p->f0, 3);
+    if (p->number_from & F0_FROM_ETA) put(w, " (from eta and k)");
+    if (p->fresnel_properties & F90) put_numbers(w, ", f90", &p->f90, 1);
+    if (p->fresnel_properties & F82) put_numbers(w, ", f82", p->f82, 3);
+    if (p->number_from & F82_FROM_ETA) put(w, " (from eta and k)");
+    put_parameter(w, p, FACET_STREAM_ETA, "eta", p->eta, 3);
+    if (p->number_from & ETA_FROM_F0) put(w, " (from f0)");
+    put_parameter(w, p, FACET_STREAM_K, "k", p->k, 3);
+    if (!(p->fresnel_properties & MEDIA)) return;
+    put_numbers(w, ", eta outside", &p->eta_outside, 1);
+    if (p->polarisation < 0.0f || p->polarisation > 0.0f) put_numbers(w, ", polarisation", &p->polarisation, 1);
 }
 
 static void describe_specular(writer *w, const plan_fields *p)
@@ -100,17 +130,16 @@ static void describe_specular(writer *w, const plan_fields *p)
     put(w, "specular: ");
     put(w, facet_word(FACET_KIND_DISTRIBUTION, p->distribution));
     if (p->distribution) {
-        put_parameter(w, p, FACET_STREAM_ALPHA, ", alpha", &p->alpha, 1);
+        put_parameter(w, p, FACET_STREAM_ALPHA, "alpha", &p->alpha, 1);
         if (p->clamped_alpha) put(w, " (clamped)");
-        put(w, ", masking ");
-        put(w, facet_word(FACET_KIND_MASKING, p->masking));
-        put(w, ", Fresnel ");
-        put(w, facet_word(FACET_KIND_FRESNEL, p->fresnel));
-        if (p->needed & FACET_STREAM_F0) {
-            put_parameter(w, p, FACET_STREAM_F0, ", f0", p->f0, 3);
-            if (p->derived_f0) put(w, " (from eta and k)");
-            if (p->needs_f90) put_numbers(w, ", f90", &p->f90, 1);
+        put_parameter(w, p, FACET_STREAM_ALPHA_Y, "alpha_y", &p->alpha_y, 1);
+        put_parameter(w, p, FACET_STREAM_EXPONENT, "exponent", &p->exponent, 1);
+        if (p->scale < 1.0f || p->scale > 1.0f) put_numbers(w, ", times", &p->scale, 1);
+        if (p->visibility != VISIBILITY_NONE) {
+            put(w, ", masking ");
+            put(w, facet_word(FACET_KIND_MASKING, p->masking));
         }
+        describe_fresnel(w, p);
     }
     put(w, "\n");
 }
@@ -122,6 +151,7 @@ static __attribute__((noinline)) size_t describe(const plan_fields *p, char *tex
     put(&w, "kernel: f32 ");
     put(&w, facet_word(FACET_KIND_ARCH, p->arch));
     put(&w, p->tier == FACET_TIER_STRICT ? " strict: the same bytes on every architecture\n" : " fast\n");
+    describe_convention(&w, p);
     describe_diffuse(&w, p);
     describe_specular(&w, p);
     if (p->coupled) put(&w, "coupled: diffuse times 1 - F\n");

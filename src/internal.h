@@ -10,8 +10,7 @@
 #error "facet needs float arithmetic in float: on i386, -msse2 -mfpmath=sse; elsewhere, -std=gnu11"
 #endif
 
-#define INV_PI     0.318309886f
-#define FACET_PI_2 1.57079633f       /* the float nearest to pi/2: above it by 4.4e-8 */
+#define INV_PI 0.318309886f
 
 /* FACET_HAS(name): 1 for a row of models.def that this build holds. FACET_BUILT(x): 1 where x is defined as 1. */
 #define FACET_BUILT_COMMA_1 0,
@@ -25,17 +24,17 @@
 #define FACET_HAS(name) 1
 #endif
 
-/* Properties of a model (models.def). */
-enum { VIEW = 1, TERMS = 2, F0 = 4, F90 = 8, RECIPROCAL = 16, CONSERVES = 32 };
+#include "models.def"    /* the properties of models */
 
 /* The rows of models.def by name. */
 enum {
-#define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                   \
-    DIFFUSE_##name = FACET_DIFFUSE_##id, DIFFUSE_PROPERTIES_##name = properties,
-#define FACET_DISTRIBUTION(id, name, ...) DISTRIBUTION_##name = FACET_DISTRIBUTION_##id,
+#define FACET_DIFFUSE(id, name, word, reads, ...)                                                                     \
+    DIFFUSE_##name = FACET_DIFFUSE_##id, DIFFUSE_READS_##name = reads,
+#define FACET_DISTRIBUTION(id, name, word, reads, ...)                                                                \
+    DISTRIBUTION_##name = FACET_DISTRIBUTION_##id, DISTRIBUTION_READS_##name = reads,
 #define FACET_MASKING(id, name, ...) MASKING_##name = FACET_MASKING_##id,
-#define FACET_FRESNEL(id, name, word, properties, title)                                                              \
-    FRESNEL_##name = FACET_FRESNEL_##id, FRESNEL_PROPERTIES_##name = properties,
+#define FACET_FRESNEL(id, name, word, reads, ...)                                                                     \
+    FRESNEL_##name = FACET_FRESNEL_##id, FRESNEL_READS_##name = reads,
 #include "models.def"
 };
 
@@ -55,7 +54,7 @@ enum {
 #include "models.def"
 };
 
-/* A masking under a distribution, by its row in models.def. */
+/* A masking under a distribution, by its row in models.def; a lobe has none. */
 enum visibility {
 #define FACET_VISIBILITY(masking, distribution, properties) VISIBILITY_##masking##_##distribution,
 #include "models.def"
@@ -70,7 +69,12 @@ enum {
     , TIER_COUNT = FACET_TIER_STRICT + 1
 };
 
-/* The components of the streams of streams.def: COMPONENT_NORMAL is the place of the normal's x. */
+/* The streams of streams.def: their number, and the places of their components: COMPONENT_NORMAL is the normal's x. */
+enum {
+#define FACET_STREAM(id, ...) STREAM_##id,
+#include "streams.def"
+    STREAM_COUNT
+};
 enum {
 #define FACET_STREAM(id, field, components, ...)                                                                      \
     COMPONENT_##id, COMPONENT_##id##_LAST = COMPONENT_##id + components - 1,
@@ -78,17 +82,25 @@ enum {
     COMPONENT_COUNT
 };
 
-/* What a facet_plan holds. Every number is as the kernels want it: clamped, derived, ready to be splatted. */
+/* Numbers of the material that came from others. */
+enum { F0_FROM_ETA = 1, ETA_FROM_F0 = 2, F82_FROM_ETA = 4 };
+
+/* What a facet_plan holds. Every number is as the kernels want it: clamped, derived, ready to be splatted. The numbers
+ * of streams are under the streams' names. */
 typedef struct __attribute__((may_alias)) plan_fields {
     uint32_t magic;                      /* PLAN_MAGIC; tells foreign bytes and byte order */
     uint8_t arch, tier;                  /* the kernel's id */
-    uint8_t diffuse, distribution, masking, visibility, fresnel;
-    uint8_t coupled, clamped_alpha, derived_f0;
-    uint8_t needs_view, needs_f90;
-    uint32_t promised, needed;           /* FACET_STREAM_*: of the material's; read by the kernel */
-    float albedo[3], sigma, sigma_max, terms[2];   /* terms: A and B over pi */
-    float alpha;
-    float f0[3], f90;
+    uint8_t diffuse, distribution, masking, visibility, fresnel, convention;
+    uint8_t coupled, clamped_alpha, number_from;   /* *_FROM_* */
+    uint8_t needs_view, common, fresnel_properties;   /* common: every model's row is COMMON */
+    uint32_t promised;                   /* FACET_STREAM_*: by the material */
+    uint32_t needed;                     /* read by the models */
+    uint32_t derived;                    /* of these, made by the kernel from ... */
+    uint32_t sources;                    /* ... these */
+    float albedo[3], sigma, alpha, alpha_y, exponent, f0[3], eta[3], k[3];
+    float base[3], metallic, roughness, specular_level, glossiness;
+    float sigma_max, terms[4];           /* terms: what models.tmpl.h makes of sigma */
+    float scale, f90, f82[3], eta_outside, polarisation;
     float emission[3];
 } plan_fields;
 
@@ -97,22 +109,27 @@ typedef struct __attribute__((may_alias)) plan_fields {
 /* One call of a kernel. */
 typedef struct job {
     const plan_fields *plan;
-    const float *component[COMPONENT_COUNT];   /* of a stream, or its one value; NULL: not read */
-    uint32_t streams;                    /* FACET_STREAM_*: come from the batch */
-    uint32_t uniform;                    /* FACET_STREAM_*: have one value */
+    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else zeros. The kernel moves
+                                                  them along. */
+    uint8_t moving[COMPONENT_COUNT];     /* the components of streams that are not uniform */
+    int moving_count;
+    uint32_t streams;                    /* FACET_STREAM_*: are read: from the batch or, if uniform, from the plan */
+    uint32_t uniform;                    /* of these, have one value */
+    uint32_t given;                      /* of these, come from the batch */
     size_t count;
     const facet_light *lights;
     size_t light_count;
-    float ambient[3];                    /* irradiance over pi */
-    bool constant_radiance;              /* ambient or emission is not 0 */
-    bool check_lights;                   /* a light has a stream, or an irradiance below 0 */
+    float ambient[3], sh[4][3];          /* irradiance over pi: everywhere; 1, y, z, x of the normal */
+    bool has_ambient, has_sh;
+    bool has_emission;
+    bool check_lights;                   /* a light is not directional, has a stream, or an irradiance below 0 */
     const uint8_t *coverage;
     float *radiance[3];
     uint32_t flags;
     size_t *invalid;
 } job;
 
-typedef void kernel(const job *);
+typedef void kernel(job *);
 
 /* The kernel of an architecture and tier; NULL where the build lacks it. */
 kernel *facet_kernel(facet_arch arch, facet_tier tier);
@@ -122,7 +139,9 @@ static inline bool plan_valid(const plan_fields *p)
 {
     return p->magic == PLAN_MAGIC && p->arch < ARCH_COUNT && p->tier < TIER_COUNT && p->diffuse < DIFFUSE_ROWS
         && p->distribution < DISTRIBUTION_ROWS && p->masking < MASKING_ROWS && p->visibility <= VISIBILITY_NONE
-        && p->fresnel < FRESNEL_ROWS && facet_kernel((facet_arch)p->arch, (facet_tier)p->tier);
+        && p->fresnel < FRESNEL_ROWS && !((p->promised | p->needed | p->derived | p->sources) >> STREAM_COUNT)
+        && p->convention <= FACET_CONVENTION_SPECULAR_GLOSSINESS
+        && facet_kernel((facet_arch)p->arch, (facet_tier)p->tier);
 }
 
 static inline facet_status refuse(facet_error *error, facet_status code, const char *field, int index)

@@ -10,26 +10,34 @@
 
 _Static_assert(sizeof(plan_fields) <= sizeof(facet_plan), "a plan fits into facet_plan");
 
-static const struct { float sigma_max; int properties; } diffuse_rows[] = {
-#define FACET_DIFFUSE(id, name, word, sigma_max, properties, title) [FACET_DIFFUSE_##id] = { sigma_max, properties },
+static const struct { uint32_t reads; int properties; float sigma_max; } diffuse_rows[] = {
+#define FACET_DIFFUSE(id, name, word, reads, properties, sigma_max, title)                                            \
+    [FACET_DIFFUSE_##id] = { reads, properties, sigma_max },
 #include "models.def"
 };
-static const int distribution_properties[] = {
-#define FACET_DISTRIBUTION(id, name, word, properties, title) [FACET_DISTRIBUTION_##id] = properties,
+typedef struct { uint32_t reads; int properties; } row;
+static const row distribution_rows[] = {
+#define FACET_DISTRIBUTION(id, name, word, reads, properties, title) [FACET_DISTRIBUTION_##id] = { reads, properties },
 #include "models.def"
 };
-static const int fresnel_properties[] = {
-#define FACET_FRESNEL(id, name, word, properties, title) [FACET_FRESNEL_##id] = properties,
+static const row fresnel_rows[] = {
+#define FACET_FRESNEL(id, name, word, reads, properties, title) [FACET_FRESNEL_##id] = { reads, properties },
 #include "models.def"
+};
+
+static const struct { int masking, distribution, properties; } visibility_rows[] = {
+#define FACET_VISIBILITY(masking, distribution, properties)                                                           \
+    [VISIBILITY_##masking##_##distribution] = { MASKING_##masking, DISTRIBUTION_##distribution, properties },
+#include "models.def"
+    [VISIBILITY_NONE] = { -1, -1, 0 },
 };
 
 static enum visibility find_visibility(int masking, int distribution)
 {
-#define FACET_VISIBILITY(masking_, distribution_, properties)                                                         \
-    if (masking == MASKING_##masking_ && distribution == DISTRIBUTION_##distribution_)                                \
-        return VISIBILITY_##masking_##_##distribution_;
-#include "models.def"
-    return VISIBILITY_NONE;
+    int i = 0;
+    while (i < VISIBILITY_NONE
+           && (visibility_rows[i].masking != masking || visibility_rows[i].distribution != distribution)) i++;
+    return (enum visibility)i;
 }
 
 static facet_status check_row(facet_kind kind, int value, const char *field, facet_error *error)
@@ -39,13 +47,20 @@ static facet_status check_row(facet_kind kind, int value, const char *field, fac
     return FACET_OK;
 }
 
+static bool is_lobe(const facet_material *m)
+{
+    return distribution_rows[m->specular.model].properties & LOBE;
+}
+
 static facet_status check_models(const facet_material *m, facet_error *error)
 {
     facet_status status = check_row(FACET_KIND_DIFFUSE, (int)m->diffuse.model, "diffuse.model", error);
     if (!status) status = check_row(FACET_KIND_DISTRIBUTION, (int)m->specular.model, "specular.model", error);
+    if (!status) status = check_row(FACET_KIND_CONVENTION, (int)m->convention.model, "convention.model", error);
     if (status || m->specular.model == FACET_DISTRIBUTION_NONE) return status;
+    status = check_row(FACET_KIND_FRESNEL, (int)m->fresnel.model, "fresnel.model", error);
+    if (status || is_lobe(m)) return status;
     status = check_row(FACET_KIND_MASKING, (int)m->specular.masking, "specular.masking", error);
-    if (!status) status = check_row(FACET_KIND_FRESNEL, (int)m->fresnel.model, "fresnel.model", error);
     if (!status && find_visibility((int)m->specular.masking, (int)m->specular.model) == VISIBILITY_NONE)
         status = refuse(error, FACET_ERROR_MODEL, "specular.masking", -1);
     return status;
@@ -60,23 +75,34 @@ static facet_status check_numbers(const float *a, int count, float least, float 
     return FACET_OK;
 }
 
-static bool gives_eta(const facet_material *m)
-{
-    return m->fresnel.eta[0] != 0.0f || m->fresnel.eta[1] != 0.0f || m->fresnel.eta[2] != 0.0f;
-}
+static bool any(const float *a) { return a[0] != 0.0f || a[1] != 0.0f || a[2] != 0.0f; }
 
-static facet_status check_material(const facet_material *m, facet_error *error)
+/* The domains of facet.h; what the material's streams bring is not looked at. */
+static facet_status check_values(const facet_material *m, uint32_t needed, facet_error *error)
 {
     const float sigma_max = diffuse_rows[m->diffuse.model].sigma_max;
+    const bool has_exponent = needed & FACET_STREAM_EXPONENT;
     const struct { const float *a; int count; float least, most; const char *field; uint32_t stream; } rules[] = {
         { m->diffuse.albedo, 3, -FLT_MAX, FLT_MAX, "diffuse.albedo", FACET_STREAM_ALBEDO },
         { &m->diffuse.sigma, 1, 0.0f, sigma_max > 0.0f ? sigma_max : FLT_MAX, "diffuse.sigma", FACET_STREAM_SIGMA },
         { &m->specular.alpha, 1, 0.0f, FLT_MAX, "specular.alpha", FACET_STREAM_ALPHA },
+        { &m->specular.alpha_y, 1, 0.0f, FLT_MAX, "specular.alpha_y", FACET_STREAM_ALPHA_Y },
+        { &m->specular.exponent, 1, has_exponent ? FACET_EXPONENT_MIN : -FLT_MAX,
+          has_exponent ? FACET_EXPONENT_MAX : FLT_MAX, "specular.exponent", FACET_STREAM_EXPONENT },
+        { &m->specular.scale, 1, 0.0f, FLT_MAX, "specular.scale", 0 },
         { m->fresnel.f0, 3, -FLT_MAX, FLT_MAX, "fresnel.f0", FACET_STREAM_F0 },
         { &m->fresnel.f90, 1, -FLT_MAX, FLT_MAX, "fresnel.f90", 0 },
-        { m->fresnel.eta, 3, 0.0f, FLT_MAX, "fresnel.eta", 0 },
-        { m->fresnel.k, 3, 0.0f, FLT_MAX, "fresnel.k", 0 },
+        { m->fresnel.f82, 3, -FLT_MAX, FLT_MAX, "fresnel.f82", 0 },
+        { m->fresnel.eta, 3, 0.0f, FLT_MAX, "fresnel.eta", FACET_STREAM_ETA },
+        { m->fresnel.k, 3, 0.0f, FLT_MAX, "fresnel.k", FACET_STREAM_K },
         { &m->fresnel.eta_outside, 1, 0.0f, FLT_MAX, "fresnel.eta_outside", 0 },
+        { &m->fresnel.polarisation, 1, -1.0f, 1.0f, "fresnel.polarisation", 0 },
+        { m->convention.base, 3, -FLT_MAX, FLT_MAX, "convention.base", FACET_STREAM_BASE },
+        { &m->convention.metallic, 1, -FLT_MAX, FLT_MAX, "convention.metallic", FACET_STREAM_METALLIC },
+        { &m->convention.roughness, 1, -FLT_MAX, FLT_MAX, "convention.roughness", FACET_STREAM_ROUGHNESS },
+        { &m->convention.specular_level, 1, -FLT_MAX, FLT_MAX, "convention.specular_level",
+          FACET_STREAM_SPECULAR_LEVEL },
+        { &m->convention.glossiness, 1, -FLT_MAX, FLT_MAX, "convention.glossiness", FACET_STREAM_GLOSSINESS },
         { m->emission, 3, -FLT_MAX, FLT_MAX, "emission", 0 },
     };
     for (size_t i = 0; i < sizeof rules / sizeof rules[0]; i++) {
@@ -85,16 +111,48 @@ static facet_status check_material(const facet_material *m, facet_error *error)
             check_numbers(rules[i].a, rules[i].count, rules[i].least, rules[i].most, rules[i].field, error);
         if (status) return status;
     }
-    for (int c = 0; c < 3; c++)
-        if (gives_eta(m) && m->fresnel.eta[c] == 0.0f) return refuse(error, FACET_ERROR_VALUE, "fresnel.eta", c);
+    return FACET_OK;
+}
 
+/* Whether there is an index, or what one can be made from. */
+static facet_status check_index(const facet_material *m, facet_error *error)
+{
+    const uint32_t reads = fresnel_rows[m->fresnel.model].reads;
+    const bool numbers = any(m->fresnel.eta), streams = m->streams & FACET_STREAM_ETA;
+    const bool f0 = any(m->fresnel.f0) || m->streams & FACET_STREAM_F0
+        || m->convention.model == FACET_CONVENTION_METALLIC_ROUGHNESS;
+    for (int c = 0; c < 3; c++)
+        if (numbers && !streams && m->fresnel.eta[c] == 0.0f) return refuse(error, FACET_ERROR_VALUE, "fresnel.eta", c);
+    if (m->specular.model == FACET_DISTRIBUTION_NONE) return FACET_OK;
+    if (reads & FACET_STREAM_ETA && !numbers && !streams && (reads & FACET_STREAM_K || !f0))
+        return refuse(error, FACET_ERROR_VALUE, "fresnel.eta", -1);
+    if (fresnel_rows[m->fresnel.model].properties & F82 && !any(m->fresnel.f82) && !numbers)
+        return refuse(error, FACET_ERROR_VALUE, "fresnel.f82", -1);
+    return FACET_OK;
+}
+
+static facet_status check_material(const facet_material *m, uint32_t needed, facet_error *error)
+{
     const uint32_t known = 0
 #define FACET_STREAM_GEOMETRY(id)
 #define FACET_STREAM_MATERIAL(id) | FACET_STREAM_##id
+#define FACET_STREAM_SOURCE(id) | FACET_STREAM_##id
 #define FACET_STREAM(id, field, components, owner, ...) FACET_STREAM_##owner(id)
 #include "streams.def"
         ;
+    facet_status status = check_values(m, needed, error);
+    if (!status) status = check_index(m, error);
+    if (status) return status;
     return m->streams & ~known ? refuse(error, FACET_ERROR_ENUM, "streams", -1) : FACET_OK;
+}
+
+/* What the models read. */
+static uint32_t needed_streams(const facet_material *m)
+{
+    uint32_t needed = diffuse_rows[m->diffuse.model].reads;
+    if (m->specular.model != FACET_DISTRIBUTION_NONE)
+        needed |= distribution_rows[m->specular.model].reads | fresnel_rows[m->fresnel.model].reads;
+    return needed;
 }
 
 static facet_status resolve_target(facet_target *target, facet_error *error)
@@ -108,69 +166,155 @@ static facet_status resolve_target(facet_target *target, facet_error *error)
     return FACET_OK;
 }
 
-/* ((eta - eta_outside)2 + k2)/((eta + eta_outside)2 + k2), without overflow. */
-static float f0_of(float eta, float k, float eta_outside)
+static void store3(float *to, vf3 a) { to[0] = a.x, to[1] = a.y, to[2] = a.z; }
+
+/* The numbers of streams as the kernels see them: in their domains, defaults in place of zeros. */
+static void take_numbers(plan_fields *p, const facet_material *m)
 {
-    float half = 0.5f * eta + 0.5f * eta_outside, r = (0.5f * eta - 0.5f * eta_outside) / half;
-    float x = vf_min(0.5f * k / half, 1e18f);
-    return (r * r + x * x) / (1.0f + x * x);
+    const float level = m->convention.specular_level;
+    store3(p->albedo, not_negative3(splat3(m->diffuse.albedo)));
+    p->sigma = m->diffuse.sigma;
+    p->alpha = clamp(m->specular.alpha, FACET_ALPHA_FLOOR, 1.0f);
+    p->alpha_y = clamp(m->specular.alpha_y, FACET_ALPHA_FLOOR, 1.0f);
+    p->exponent = m->specular.exponent;
+    store3(p->f0, clamp3(splat3(m->fresnel.f0), 0.0f, 1.0f));
+    store3(p->eta, clamp3(splat3(m->fresnel.eta), FACET_ETA_FLOOR, FACET_ETA_CAP));
+    store3(p->k, clamp3(splat3(m->fresnel.k), 0.0f, FACET_ETA_CAP));
+    store3(p->base, not_negative3(splat3(m->convention.base)));
+    p->metallic = clamp(m->convention.metallic, 0.0f, 1.0f);
+    p->roughness = clamp(m->convention.roughness, 0.0f, 1.0f);
+    p->specular_level = level == 0.0f ? 0.5f : clamp(level, 0.0f, 1.0f);
+    p->glossiness = clamp(m->convention.glossiness, 0.0f, 1.0f);
 }
 
-static void store3(float *to, vf3 a) { to[0] = a.x, to[1] = a.y, to[2] = a.z; }
+/* Forgets the numbers that no kernel sees, so that materials that differ in them alone have equal plans. */
+static void forget_numbers(plan_fields *p)
+{
+    const uint32_t seen = ((p->needed & ~p->derived) | p->sources) & ~p->promised;
+#define NUMBERS_1(field) &p->field
+#define NUMBERS_3(field) p->field
+#define FORGET_GEOMETRY(id, field, components)
+#define FORGET_MATERIAL(id, field, components)                                                                        \
+    for (int c = 0; c < components && !(seen & FACET_STREAM_##id); c++) (NUMBERS_##components(field))[c] = 0.0f;
+#define FORGET_SOURCE FORGET_MATERIAL
+#define FACET_STREAM(id, field, components, owner, ...) FORGET_##owner(id, field, components)
+#include "streams.def"
+}
+
+/* Says that `stream`, if it is wanted, follows from others. True where these are all numbers, and it can be made here
+ * and now; else the kernel makes it. */
+static bool derive(plan_fields *p, uint32_t wanted, uint32_t stream, uint32_t from)
+{
+    if (!(wanted & stream)) return false;
+    p->promised &= ~stream;
+    if (!((p->promised | p->derived) & from)) return true;
+    p->derived |= stream;
+    p->sources |= from;
+    return false;
+}
+
+static void derive_by_convention(plan_fields *p, uint32_t wanted)
+{
+    const uint32_t of_base = FACET_STREAM_BASE | FACET_STREAM_METALLIC;
+    switch ((facet_convention)p->convention) {
+    case FACET_CONVENTION_DIRECT:
+        return;
+    case FACET_CONVENTION_METALLIC_ROUGHNESS:
+        if (derive(p, wanted, FACET_STREAM_ALBEDO, of_base))
+            store3(p->albedo, albedo_of_base(splat3(p->base), p->metallic));
+        if (derive(p, wanted, FACET_STREAM_F0, of_base | FACET_STREAM_SPECULAR_LEVEL))
+            store3(p->f0, f0_of_base(splat3(p->base), p->metallic, p->specular_level));
+        if (derive(p, wanted, FACET_STREAM_ALPHA, FACET_STREAM_ROUGHNESS))
+            p->alpha = alpha_of_roughness(p->roughness);
+        return;
+    case FACET_CONVENTION_SPECULAR_GLOSSINESS:
+        if (derive(p, wanted, FACET_STREAM_ALPHA, FACET_STREAM_GLOSSINESS))
+            p->alpha = alpha_of_roughness(1.0f - p->glossiness);
+    }
+}
+
+/* Parameters of which the models read one and the material says another. */
+static void derive_parameters(plan_fields *p, const facet_material *m)
+{
+    const bool eta_given = any(m->fresnel.eta) || m->streams & FACET_STREAM_ETA;
+    const bool f0_given = any(m->fresnel.f0) || m->streams & FACET_STREAM_F0
+        || m->convention.model == FACET_CONVENTION_METALLIC_ROUGHNESS;
+    const bool no_alpha_y = m->specular.alpha_y == 0.0f && !(m->streams & FACET_STREAM_ALPHA_Y);
+    uint32_t wanted = p->needed;
+    if (wanted & FACET_STREAM_F0 && eta_given && !f0_given) p->number_from |= F0_FROM_ETA;
+    if (wanted & FACET_STREAM_ETA && !eta_given) {
+        p->number_from |= ETA_FROM_F0;
+        wanted |= FACET_STREAM_F0;
+    }
+    derive_by_convention(p, wanted);
+    if (no_alpha_y && derive(p, wanted, FACET_STREAM_ALPHA_Y, FACET_STREAM_ALPHA)) p->alpha_y = p->alpha;
+    if (p->number_from & F0_FROM_ETA && derive(p, wanted, FACET_STREAM_F0, FACET_STREAM_ETA | FACET_STREAM_K))
+        for (int c = 0; c < 3; c++) p->f0[c] = f0_of_index(p->eta[c], p->k[c], p->eta_outside);
+    if (p->number_from & ETA_FROM_F0 && derive(p, wanted, FACET_STREAM_ETA, FACET_STREAM_F0))
+        for (int c = 0; c < 3; c++)
+            p->eta[c] = clamp(p->eta_outside * eta_of_f0(p->f0[c]), FACET_ETA_FLOOR, FACET_ETA_CAP);
+}
+
+static terms terms_of(facet_diffuse model, float sigma)
+{
+    switch (model) {
+#define FACET_DIFFUSE(id, name, ...)                                                                                  \
+    case FACET_DIFFUSE_##id: return FACET_HAS(name) ? terms_##name(sigma) : terms_none(sigma);
+#include "models.def"
+    }
+    return terms_none(0.0f);
+}
 
 static void compile_diffuse(plan_fields *p, const facet_material *m)
 {
-    const int properties = diffuse_rows[m->diffuse.model].properties;
     p->diffuse = (uint8_t)m->diffuse.model;
-    if (m->diffuse.model == FACET_DIFFUSE_NONE) return;
-
-    if (properties & VIEW) p->needs_view = 1;
-    p->needed |= FACET_STREAM_ALBEDO;
-    if (!(p->promised & FACET_STREAM_ALBEDO)) store3(p->albedo, not_negative3(splat3(m->diffuse.albedo)));
-    if (!(properties & TERMS)) return;
-
-    p->needed |= FACET_STREAM_SIGMA;
+    p->needs_view = (diffuse_rows[m->diffuse.model].properties & VIEWED) != 0;
+    if (!(p->needed & FACET_STREAM_SIGMA)) return;
     p->sigma_max = diffuse_rows[m->diffuse.model].sigma_max;
     if (p->promised & FACET_STREAM_SIGMA) return;
-    terms t = terms_none(0.0f);
-    switch (m->diffuse.model) {
-#define FACET_DIFFUSE(id, name, word, sigma_max, properties_, title)                                                  \
-    case FACET_DIFFUSE_##id:                                                                                         \
-        if ((properties_) & TERMS) t = terms_##name(m->diffuse.sigma);                                               \
-        break;
-#include "models.def"
-    }
-    p->sigma = m->diffuse.sigma;
-    p->terms[0] = t.A;
-    p->terms[1] = t.B;
+    const terms t = terms_of(m->diffuse.model, m->diffuse.sigma);
+    p->terms[0] = t.A, p->terms[1] = t.B, p->terms[2] = t.C, p->terms[3] = t.D;
+}
+
+static void compile_fresnel(plan_fields *p, const facet_material *m)
+{
+    const int properties = fresnel_rows[m->fresnel.model].properties;
+    const float outside = m->fresnel.eta_outside;
+    p->fresnel = (uint8_t)m->fresnel.model;
+    p->fresnel_properties = (uint8_t)properties;
+    p->eta_outside = outside == 0.0f ? 1.0f : clamp(outside, FACET_ETA_FLOOR, FACET_ETA_CAP);
+    p->polarisation = m->fresnel.polarisation;
+    if (properties & F90) p->f90 = m->fresnel.f90 == 0.0f ? 1.0f : clamp(m->fresnel.f90, 0.0f, 1.0f);
+    if (!(FACET_HAS(schlick_f82) && properties & F82)) return;
+    store3(p->f82, clamp3(splat3(m->fresnel.f82), 0.0f, 1.0f));
+    if (any(m->fresnel.f82)) return;
+    p->number_from |= F82_FROM_ETA;
+    for (int c = 0; c < 3; c++)
+        p->f82[c] = conductor(p->eta[c], p->k[c], p->eta_outside, 1.0f / 7.0f, 0.5f + 0.5f * p->polarisation);
 }
 
 static void compile_specular(plan_fields *p, const facet_material *m)
 {
     p->distribution = (uint8_t)m->specular.model;
     p->visibility = VISIBILITY_NONE;
+    p->scale = 1.0f;
     if (m->specular.model == FACET_DISTRIBUTION_NONE) return;
-
+    p->needs_view = 1;
+    p->coupled = m->coupled;
+    if (m->specular.scale != 0.0f) p->scale = m->specular.scale;
+    compile_fresnel(p, m);
+    if (is_lobe(m)) return;
     p->masking = (uint8_t)m->specular.masking;
     p->visibility = (uint8_t)find_visibility((int)m->specular.masking, (int)m->specular.model);
-    p->fresnel = (uint8_t)m->fresnel.model;
-    p->coupled = m->coupled;
-    if (distribution_properties[m->specular.model] & VIEW) p->needs_view = 1;
-    p->needed |= FACET_STREAM_ALPHA;
-    if (!(p->promised & FACET_STREAM_ALPHA)) {
-        p->alpha = clamp(m->specular.alpha, FACET_ALPHA_FLOOR, 1.0f);
-        p->clamped_alpha = p->alpha != m->specular.alpha;
-    }
-    if (!(fresnel_properties[m->fresnel.model] & F0)) return;
+}
 
-    p->needs_f90 = fresnel_properties[m->fresnel.model] & F90 ? 1 : 0;
-    p->needed |= FACET_STREAM_F0;
-    p->f90 = m->fresnel.f90 == 0.0f ? 1.0f : clamp(m->fresnel.f90, 0.0f, 1.0f);
-    if (p->promised & FACET_STREAM_F0) return;
-    const float *f0 = m->fresnel.f0, *eta = m->fresnel.eta, *k = m->fresnel.k;
-    const float outside = m->fresnel.eta_outside > 0.0f ? m->fresnel.eta_outside : 1.0f;
-    p->derived_f0 = gives_eta(m) && f0[0] == 0.0f && f0[1] == 0.0f && f0[2] == 0.0f;
-    for (int c = 0; c < 3; c++) p->f0[c] = p->derived_f0 ? f0_of(eta[c], k[c], outside) : clamp(f0[c], 0.0f, 1.0f);
+static bool has_common_models(const plan_fields *p)
+{
+    int common = diffuse_rows[p->diffuse].properties;
+    if (p->distribution != FACET_DISTRIBUTION_NONE)
+        common &= distribution_rows[p->distribution].properties & visibility_rows[p->visibility].properties
+            & fresnel_rows[p->fresnel].properties;
+    return common & COMMON;
 }
 
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
@@ -179,7 +323,9 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
 {
     facet_status status = resolve_target(&target, error);
     if (!status) status = check_models(m, error);
-    if (!status) status = check_material(m, error);
+    if (status) return status;
+    const uint32_t needed = needed_streams(m);
+    status = check_material(m, needed, error);
     if (status) return status;
 
     for (size_t i = 0; i < sizeof out->opaque / sizeof out->opaque[0]; i++) out->opaque[i] = 0;
@@ -187,9 +333,16 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
     p->magic = PLAN_MAGIC;
     p->arch = (uint8_t)target.arch;
     p->tier = (uint8_t)target.tier;
+    p->convention = (uint8_t)m->convention.model;
     p->promised = m->streams;
+    p->needed = needed;
+    take_numbers(p, m);
     compile_diffuse(p, m);
     compile_specular(p, m);
+    derive_parameters(p, m);
+    forget_numbers(p);
+    p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
+    p->common = has_common_models(p);
     store3(p->emission, not_negative3(splat3(m->emission)));
     return FACET_OK;
 }

@@ -25,18 +25,31 @@ static facet_status check_stream(const float *const *stream, int components, con
     return FACET_OK;
 }
 
-/* Raises *special where the light needs more of the kernel than a plain one. */
-static facet_status check_light(const facet_light *light, int index, bool *special, facet_error *error)
+/* A cone's cosines: -1 <= cos_outer <= cos_inner <= 1; NaN is neither. */
+static facet_status check_spot(const facet_light *light, int index, facet_error *error)
 {
-    if (light->kind != FACET_LIGHT_DIRECTIONAL) return refuse(error, FACET_ERROR_ENUM, "light.kind", index);
+    if (!(light->cos_outer >= -1.0f && light->cos_outer <= 1.0f))
+        return refuse(error, FACET_ERROR_VALUE, "light.cos_outer", index);
+    if (!(light->cos_inner >= light->cos_outer && light->cos_inner <= 1.0f))
+        return refuse(error, FACET_ERROR_VALUE, "light.cos_inner", index);
+    return check_light_vector(light->axis, "light.axis", index, error);
+}
 
-    const float *E = light->irradiance;
-    if (light->kind != FACET_LIGHT_DIRECTIONAL || light->direction_of[0] || light->irradiance_of[0] || light->visibility
-        || E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f)
-        *special = true;
+static facet_status check_place(const facet_light *light, int index, facet_error *error)
+{
+    facet_status status = check_vector(light->position, "light.position", index, error);
+    if (!status && !(light->range >= 0.0f && light->range <= FLT_MAX))
+        status = refuse(error, FACET_ERROR_VALUE, "light.range", index);
+    return status || light->kind != FACET_LIGHT_SPOT ? status : check_spot(light, index, error);
+}
 
+static facet_status check_light(const facet_light *light, int index, facet_error *error)
+{
     facet_status status;
-    if (none_given(light->direction_of))
+    if ((unsigned)light->kind > FACET_LIGHT_SPOT) return refuse(error, FACET_ERROR_ENUM, "light.kind", index);
+    if (light->kind != FACET_LIGHT_DIRECTIONAL)
+        status = check_place(light, index, error);
+    else if (none_given(light->direction_of))
         status = check_light_vector(light->direction, "light.direction", index, error);
     else
         status = check_stream(light->direction_of, 3, "light.direction_of", index, error);
@@ -47,60 +60,123 @@ static facet_status check_light(const facet_light *light, int index, bool *speci
     return check_stream(light->irradiance_of, 3, "light.irradiance_of", index, error);
 }
 
-/* Finds the streams that the plan reads, or the plan's numbers in their place; names the first that is not there. */
+/* Whether the light needs more of the kernel than a plain one. */
+static bool is_special(const facet_light *light)
+{
+    const float *E = light->irradiance;
+    return light->kind != FACET_LIGHT_DIRECTIONAL || light->direction_of[0] || light->irradiance_of[0]
+        || light->visibility || E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f;
+}
+
+static facet_status check_lights(job *j, const facet_batch *b, facet_error *error)
+{
+    facet_status status = FACET_OK;
+    if (b->light_count && !b->lights) return refuse(error, FACET_ERROR_NULL, "lights", -1);
+    for (size_t i = 0; !status && i < b->light_count; i++) {
+        const facet_light *light = &b->lights[i];
+        status = check_light(light, (int)i, error);
+        if (is_special(light)) j->check_lights = true;
+        if (light->kind != FACET_LIGHT_DIRECTIONAL) j->streams |= FACET_STREAM_POSITION;
+    }
+    return status;
+}
+
+/* Real spherical harmonics of order 0 and 1, times pi and 2 pi/3 (Ramamoorthi and Hanrahan 2001), over pi. */
+#define SH_0 0.282094792f
+#define SH_1 0.325735008f
+
+static bool all_zero(const float *a, int count)
+{
+    bool zero = true;
+    for (int i = 0; i < count; i++) zero = zero & (a[i] == 0.0f);
+    return zero;
+}
+
+static facet_status take_sh(job *j, const facet_batch *b, facet_error *error)
+{
+    j->has_sh = !all_zero(b->sh[0], 12);
+    if (!j->has_sh) return FACET_OK;
+    for (int i = 0; i < 4; i++) {
+        facet_status status = check_vector(b->sh[i], "sh", i, error);
+        if (status) return status;
+        for (int c = 0; c < 3; c++) j->sh[i][c] = b->sh[i][c] * (i ? SH_1 : SH_0);
+    }
+    return FACET_OK;
+}
+
+static facet_status take_ambient(job *j, const facet_batch *b, facet_error *error)
+{
+    facet_status status = check_vector(b->ambient, "ambient", -1, error);
+    if (!status) status = take_sh(j, b, error);
+    if (status) return status;
+    for (int c = 0; c < 3; c++) j->ambient[c] = b->ambient[c] > 0.0f ? b->ambient[c] * INV_PI : 0.0f;
+    j->has_ambient = j->plan->needed & FACET_STREAM_ALBEDO && (j->has_sh || !all_zero(j->ambient, 3));
+    if (j->has_ambient && b->occlusion) j->streams |= FACET_STREAM_OCCLUSION;
+    return FACET_OK;
+}
+
+/* Points the kernel to a stream of the batch, or to the plan's `number` in its place (NULL: it has none). False where a
+ * pointer is missing. */
+static inline __attribute__((always_inline)) bool take_stream(job *j, uint32_t bit, int first, int components,
+                                                             const float *const *given, const float *number)
+{
+    const bool from_batch = !number || j->plan->promised & bit;
+    if (from_batch) j->given |= bit;
+    else j->uniform |= bit;
+    const bool moving = !(j->uniform & bit);
+    for (int c = 0; c < components; c++) {
+        if (from_batch && !given[c]) return false;
+        j->component[first + c] = from_batch ? given[c] : number + c;
+        if (moving) j->moving[j->moving_count + c] = (uint8_t)(first + c);
+    }
+    if (moving) j->moving_count += components;
+    return true;
+}
+
+#define GIVEN_1(field) &b->field
+#define GIVEN_3(field) b->field
+#define NUMBER_1(field) &p->field
+#define NUMBER_3(field) p->field
+#define NUMBER_GEOMETRY(components, field) NULL
+#define NUMBER_MATERIAL(components, field) NUMBER_##components(field)
+#define NUMBER_SOURCE                      NUMBER_MATERIAL
+
+/* What stands for streams that are not read: of a plan that was tampered with, models may read them. */
+static const float zeros[64];
+
+/* Finds the streams that are read, or the plan's numbers in their place; names the first that is not there. What the
+ * material promised and nothing reads must be there too. */
 static facet_status gather_streams(job *j, const facet_batch *b, facet_error *error)
 {
     const plan_fields *p = j->plan;
-    const bool view_needed = p->needs_view || b->flags & FACET_TWO_SIDED;
-    const uint32_t read = p->needed | FACET_STREAM_NORMAL | FACET_STREAM_VIEW;
-    uint32_t streams = FACET_STREAM_NORMAL | p->promised, uniform = b->uniform;
-    if (view_needed || !none_given(b->view)) streams |= FACET_STREAM_VIEW;
-
-#define BATCH_1(field) &b->field
-#define BATCH_3(field) b->field
-#define PLAN_1(field) &p->field
-#define PLAN_3(field) p->field
-#define INSTEAD_GEOMETRY(id, field, components)                                                                       \
-    for (int c = 0; c < components; c++) j->component[COMPONENT_##id + c] = 0;                                       \
-    uniform &= ~(uint32_t)FACET_STREAM_##id;
-#define INSTEAD_MATERIAL(id, field, components)                                                                       \
-    for (int c = 0; c < components; c++) j->component[COMPONENT_##id + c] = PLAN_##components(field) + c;            \
-    uniform |= FACET_STREAM_##id;
+    j->streams |= FACET_STREAM_NORMAL | ((p->needed | p->sources) & ~p->derived);
+    if (p->needs_view || b->flags & FACET_TWO_SIDED || !none_given(b->view)) j->streams |= FACET_STREAM_VIEW;
+    const uint32_t taken = j->streams | p->promised;
+    j->uniform = b->uniform;
+    j->given = 0;
+    j->moving_count = 0;
+    for (int c = 0; c < COMPONENT_COUNT; c++) j->component[c] = zeros;
 #define FACET_STREAM(id, field, components, owner, ...)                                                               \
-    if (streams & FACET_STREAM_##id) {                                                                               \
-        for (int c = 0; c < components; c++) {                                                                       \
-            const float *component = (BATCH_##components(field))[c];                                                 \
-            if (!component) return refuse(error, FACET_ERROR_NULL, #field, -1);                                      \
-            j->component[COMPONENT_##id + c] = component;                                                            \
-        }                                                                                                            \
-    }                                                                                                                \
-    if (!(streams & read & FACET_STREAM_##id)) {                                                                     \
-        INSTEAD_##owner(id, field, components)                                                                       \
-    }
+    if (taken & FACET_STREAM_##id                                                                                    \
+        && !take_stream(j, FACET_STREAM_##id, COMPONENT_##id, components, GIVEN_##components(field),                 \
+                        NUMBER_##owner(components, field)))                                                          \
+        return refuse(error, FACET_ERROR_NULL, #field, -1);
 #include "streams.def"
-    j->streams = streams & read;
-    j->uniform = uniform;
+    j->uniform &= j->streams;
+    j->given &= j->streams;
     return FACET_OK;
 }
 
 static facet_status check_batch(job *j, const facet_batch *b, facet_error *error)
 {
-    const uint32_t known_flags = FACET_ACCUMULATE | FACET_TWO_SIDED, known_streams = 0
-#define FACET_STREAM(id, field, components, owner, ...) | FACET_STREAM_##id
-#include "streams.def"
-        ;
+    const uint32_t known_flags = FACET_ACCUMULATE | FACET_TWO_SIDED, known_streams = ((uint32_t)1 << STREAM_COUNT) - 1;
     if (b->flags & ~known_flags) return refuse(error, FACET_ERROR_ENUM, "flags", -1);
     if (b->uniform & ~known_streams) return refuse(error, FACET_ERROR_ENUM, "uniform", -1);
-    facet_status status = gather_streams(j, b, error);
-    if (status) return status;
-    for (int c = 0; c < 3; c++)
-        if (!b->radiance[c]) return refuse(error, FACET_ERROR_NULL, "radiance", c);
-
-    status = check_vector(b->ambient, "ambient", -1, error);
-    if (!status && b->light_count && !b->lights) status = refuse(error, FACET_ERROR_NULL, "lights", -1);
-    j->check_lights = false;
-    for (size_t i = 0; !status && i < b->light_count; i++)
-        status = check_light(&b->lights[i], (int)i, &j->check_lights, error);
+    facet_status status = check_lights(j, b, error);
+    if (!status) status = take_ambient(j, b, error);
+    if (!status) status = gather_streams(j, b, error);
+    for (int c = 0; c < 3 && !status; c++)
+        if (!b->radiance[c]) status = refuse(error, FACET_ERROR_NULL, "radiance", c);
     return status;
 }
 
@@ -109,6 +185,8 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, const 
 {
     job j;
     j.plan = p;
+    j.streams = 0;
+    j.check_lights = false;
     facet_status status = check_batch(&j, b, error);
     if (status) return status;
 
@@ -118,12 +196,8 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, const 
     j.coverage = b->coverage;
     j.flags = b->flags;
     j.invalid = b->invalid;
-    j.constant_radiance = false;
-    for (int c = 0; c < 3; c++) {
-        j.ambient[c] = b->ambient[c] > 0.0f ? b->ambient[c] * INV_PI : 0.0f;
-        j.radiance[c] = b->radiance[c];
-        if (j.ambient[c] > 0.0f || p->emission[c] > 0.0f) j.constant_radiance = true;
-    }
+    j.has_emission = p->emission[0] > 0.0f || p->emission[1] > 0.0f || p->emission[2] > 0.0f;
+    for (int c = 0; c < 3; c++) j.radiance[c] = b->radiance[c];
     facet_kernel((facet_arch)p->arch, (facet_tier)p->tier)(&j);
     return FACET_OK;
 }

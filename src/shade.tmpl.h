@@ -14,7 +14,7 @@ _Static_assert(BLOCK % GROUP == 0 && BLOCK % 8 == 0 && BLOCK <= 64, "a bit a sam
 
 /* Up to BLOCK samples of a batch, or one group that was mended. */
 typedef struct {
-    const float *component[COMPONENT_COUNT];
+    const float *const *component;
     float *radiance[3];
     size_t i, count;                     /* its first sample in the batch; its samples */
     uint64_t covered;                    /* a bit a sample */
@@ -24,6 +24,27 @@ typedef struct {
 /* The bits of a vector's three components, together. */
 OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 
+/* Leaves a sign where a value of a stream is outside its domain, for those of one component and of three. `*unit`
+ * gathers what must not be above 1. */
+OP vf outside_1(vf a, float low, float high, vf *unit)
+{
+    vf odd = splat(0.0f);
+    if (__builtin_constant_p(high) && high == 1.0f) *unit = vf_bits_max(*unit, a);
+    else odd = above(a, high);
+    return low > 0.0f ? vf_or(odd, below(a, low)) : odd;
+}
+OP vf outside_3(vf3 a, float low, float high, bool plain, vf *unit)
+{
+    if (low < 0.0f) return above(largest((vf3){ vf_abs(a.x), vf_abs(a.y), vf_abs(a.z) }), high);
+    if (__builtin_constant_p(high) && high == FLT_MAX) return plain ? any_bits(a) : above(any_bits(a), FLT_MAX);
+    vf odd = outside_1(largest(a), 0.0f, high, unit);
+    return low > 0.0f ? vf_or(odd, vf_or(vf_or(below(a.x, low), below(a.y, low)), below(a.z, low))) : odd;
+}
+
+/* The streams that most batches have, and those that fewer have and that share one branch. */
+#define COMMON_STREAMS (FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALPHA | FACET_STREAM_F0)
+#define RARE_STREAMS   (~(uint32_t)(FACET_STREAM_NORMAL | FACET_STREAM_VIEW | COMMON_STREAMS))
+
 /* Leaves a sign where a sample of the group may need mending; errs on the side of yes: several components' bits
  * together can look like an infinity, but not while all are of magnitude below 2. A plain batch's vectors need no look:
  * what is not finite shows in the result, and a zero normal's result is 0. */
@@ -31,19 +52,22 @@ OP vf odd_values(const group *g, features x, const plan_fields *p, int k)
 {
     vf odd = splat(0.0f), unit = splat(0.0f);
     if (!x.plain) {
-        vf n = vf_abs(any_bits(LOAD3(g, NORMAL, k))), v = x.view ? vf_abs(any_bits(LOAD3(g, VIEW, k))) : n;
+        vf n = vf_abs(any_bits(LOAD3(g, NORMAL, k))), v = n;
+        if (x.streams & FACET_STREAM_VIEW) v = vf_abs(any_bits(LOAD3(g, VIEW, k)));
         odd = vf_or(below(n, FLT_TRUE_MIN), above(vf_or(n, v), FLT_MAX));
     }
-    if (x.needed & FACET_STREAM_ALBEDO) {
-        vf albedo = any_bits(LOAD3(g, ALBEDO, k));
-        odd = vf_or(odd, x.plain ? albedo : above(albedo, FLT_MAX));
-    }
-    if (x.needed & FACET_STREAM_SIGMA) odd = vf_or(odd, above(LOAD(g, SIGMA, k), p->sigma_max));
-    if (x.needed & FACET_STREAM_F0) unit = largest(LOAD3(g, F0, k));
-    if (x.needed & FACET_STREAM_ALPHA) {
-        vf alpha = LOAD(g, ALPHA, k);
-        unit = vf_bits_max(unit, alpha);
-        odd = vf_or(odd, below(alpha, FACET_ALPHA_FLOOR));
+#define OUTSIDE_1(id, low, high) outside_1(LOAD(g, id, k), low, high, &unit)
+#define OUTSIDE_3(id, low, high) outside_3(LOAD3(g, id, k), low, high, x.plain, &unit)
+#define OUTSIDE(which, id, components, low, high)                                                                     \
+    if ((which) & FACET_STREAM_##id && x.streams & FACET_STREAM_##id)                                              \
+        odd = vf_or(odd, OUTSIDE_##components(id, low, high));
+#define FACET_STREAM(id, field, components, owner, low, high, title) OUTSIDE(COMMON_STREAMS, id, components, low, high)
+#include "streams.def"
+    if (x.streams & RARE_STREAMS) {
+#define FACET_STREAM(id, field, components, owner, low, high, title) OUTSIDE(RARE_STREAMS, id, components, low, high)
+#include "streams.def"
+        if (x.streams & FACET_STREAM_TANGENT)
+            odd = vf_or(odd, below(vf_abs(any_bits(LOAD3(g, TANGENT, k))), FLT_TRUE_MIN));
     }
     return vf_or(odd, above(unit, 1.0f));
 }
@@ -62,7 +86,7 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
 {
     const size_t end = covered_end(b, at);
     for (; at + GROUP <= end; at += GROUP) {
-        vf odd[K];
+        vf odd[VECTORS];
         group g;
         g.component = b->component;
         g.at = at;
@@ -70,7 +94,7 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
         prepare(&g, x, j);
         const size_t lights = x.plain ? 1 : j->light_count;
         for (size_t light = 0; light < lights; light++) add_light(&g, x, j, &j->lights[light], b->i + at);
-        const uint64_t bad = x.plain ? 0 : add_constants(&g, j, b->radiance);
+        const uint64_t bad = x.plain ? 0 : add_constants(&g, x, j, b->radiance);
 
         uint32_t mend = 0;
         EACH(k) mend |= vf_signs(vf_or(odd[k], above(largest(g.sum[k]), FLT_MAX)));
@@ -83,8 +107,7 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
 
 typedef size_t block_shader(const job *, const block *, size_t at, uint64_t *invalid);
 
-/* Any block of any batch. */
-static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, size_t at, uint64_t *invalid)
+OP size_t shade_features(const job *j, bool common, const block *b, size_t at, uint64_t *invalid)
 {
     const plan_fields *p = j->plan;
     const features x = {
@@ -92,12 +115,24 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
         .distribution = (facet_distribution)p->distribution,
         .visibility = (enum visibility)p->visibility,
         .fresnel = (facet_fresnel)p->fresnel,
-        .needed = p->needed,
+        .streams = (j->streams & ~p->sources) | p->needed,
         .coupled = p->coupled,
-        .view = j->streams & FACET_STREAM_VIEW,
+        .scaled = p->scale != 1.0f,
         .two_sided = j->flags & FACET_TWO_SIDED,
+        .common = common,
     };
     return shade_block(j, x, b, at, invalid);
+}
+
+/* Any block of any batch; one of common models and lights. */
+static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, size_t at, uint64_t *invalid)
+{
+    return shade_features(j, false, b, at, invalid);
+}
+
+static __attribute__((noinline)) size_t shade_common(const job *j, const block *b, size_t at, uint64_t *invalid)
+{
+    return shade_features(j, true, b, at, invalid);
 }
 
 /* The rows of special.def: the same body with constants, for plain batches of one-sided samples. */
@@ -109,10 +144,9 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
                              .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                       \
                              .visibility = VISIBILITY_##masking##_##distribution_,                                   \
                              .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                           \
-                             .needed = FACET_STREAM_ALBEDO | FACET_STREAM_ALPHA |                                    \
-                                       (DIFFUSE_PROPERTIES_##diffuse_ & TERMS ? FACET_STREAM_SIGMA : 0) |            \
-                                       (FRESNEL_PROPERTIES_##fresnel_ & F0 ? FACET_STREAM_F0 : 0),                   \
-                             .coupled = coupled_, .view = true, .plain = true };                                     \
+                             .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_ |         \
+                                        DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,               \
+                             .coupled = coupled_, .plain = true };                                                   \
         return shade_block(j, x, b, at, invalid);                                                                    \
     }
 #include "special.def"
@@ -120,52 +154,74 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
 static block_shader *choose_shader(const job *j)
 {
     const plan_fields *p = j->plan;
-    const bool plain = j->light_count == 1 && !j->check_lights && !j->constant_radiance && !j->invalid
-                       && j->streams & FACET_STREAM_VIEW && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
-    if (!plain) return shade_any;
+    block_shader *generic = p->common && !(j->streams & FACET_STREAM_POSITION) ? shade_common : shade_any;
+    const bool plain = j->light_count == 1 && !j->check_lights && !j->has_ambient && !j->has_emission && !j->invalid
+                       && p->scale == 1.0f && j->streams & FACET_STREAM_VIEW
+                       && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
+    if (!plain) return generic;
 #define FACET_SPECIAL(diffuse_, distribution_, masking, fresnel_, coupled_)                                           \
     if (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                  \
         && p->diffuse == DIFFUSE_##diffuse_ && p->visibility == VISIBILITY_##masking##_##distribution_                \
         && p->fresnel == FRESNEL_##fresnel_ && p->coupled == coupled_)                                                \
         return shade_##diffuse_##_##distribution_##_##masking##_##fresnel_##_##coupled_;
 #include "special.def"
-    return shade_any;
+    return generic;
 }
 
 /* ---- What keeps the mathematics above free of special cases --------------------------------------------------------
  * Nearly every group is whole and covered, has normals and finite values, and parameters in their domains. One that has
  * not is copied, mended, shaded like any other, and written sample by sample. */
 
+/* The place of every stream's components. */
+static const struct { uint8_t first, components; } streams[STREAM_COUNT] = {
+#define FACET_STREAM(id, field, components, ...) { COMPONENT_##id, components },
+#include "streams.def"
+};
+
+/* A component of b's samples at `at`, with zeros behind the end, clamped to its domain. */
+static void mend_component(const block *b, int c, size_t at, float low, float high, float *values, vf *is_finite)
+{
+    const size_t count = b->count - at < GROUP ? b->count - at : GROUP;
+    for (size_t lane = 0; lane < GROUP; lane++) values[lane] = lane < count ? b->component[c][at + lane] : 0.0f;
+    EACH(k) {
+        vf a = vf_load(values + k * VF_LANES);
+        is_finite[k] = is_finite[k] + (a - a);
+        vf_store(values + k * VF_LANES, clamp(a, low, high));
+    }
+}
+
+/* A bit for each sample of which a vector is 0. */
+static __attribute__((noinline)) uint32_t zero_vectors(float (*values)[GROUP], int component)
+{
+    uint32_t zero = 0;
+    EACH(k) {
+        const float *a = values[component] + k * VF_LANES;
+        vf3 vector = { vf_load(a), vf_load(a + GROUP), vf_load(a + 2 * GROUP) };
+        zero |= vm_bits(vf_eq(any_bits(vector), splat(0.0f))) << k * VF_LANES;
+    }
+    return zero;
+}
+
 /* Fills `values` from b's samples at `at`, with zeros behind the end, clamps what is outside its domain. Returns a bit
- * for each sample that is invalid: without a normal, or not finite. */
-OP uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GROUP])
+ * for each sample that is invalid: without a normal or a tangent, or not finite. */
+static uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GROUP])
 {
     const plan_fields *p = j->plan;
-    const size_t count = b->count - at < GROUP ? b->count - at : GROUP;
-    uint32_t invalid = 0;
-    vf is_finite[K];
-    EACH(k) is_finite[k] = splat(0.0f);
-
-#define CLAMP_GEOMETRY(a, low, high) (a)
-#define CLAMP_MATERIAL(a, low, high) clamp(a, low, high)
-#define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
-    for (int c = COMPONENT_##id; c <= COMPONENT_##id##_LAST; c++) {                                                  \
-        if (!b->component[c]) continue;                                                                              \
-        for (size_t lane = 0; lane < GROUP; lane++)                                                                  \
-            values[c][lane] = lane < count ? b->component[c][at + lane] : 0.0f;                                      \
-        EACH(k) {                                                                                                    \
-            vf a = vf_load(values[c] + k * VF_LANES);                                                                \
-            if (j->streams & FACET_STREAM_##id) is_finite[k] = is_finite[k] + (a - a);                               \
-            vf_store(values[c] + k * VF_LANES, CLAMP_##owner(a, low, high));                                         \
-        }                                                                                                            \
-    }
+    const uint32_t read = (j->streams & ~p->sources) | p->needed;
+    const struct { float low, high; } domain[STREAM_COUNT] = {
+#define FACET_STREAM(id, field, components, owner, low, high, title) { low, high },
 #include "streams.def"
-    EACH(k) {
-        const float *n = values[COMPONENT_NORMAL] + k * VF_LANES;
-        vm no_normal = vf_eq(any_bits((vf3){ vf_load(n), vf_load(n + GROUP), vf_load(n + 2 * GROUP) }), splat(0.0f));
-        uint32_t bits = vm_bits(no_normal) | ~vm_bits(vf_eq(is_finite[k], splat(0.0f)));
-        invalid |= (bits & LANES(VF_LANES)) << k * VF_LANES;
+    };
+    vf is_finite[VECTORS];
+    EACH(k) is_finite[k] = splat(0.0f);
+    for (uint32_t left = read; left; left &= left - 1) {
+        const int stream = __builtin_ctz(left), first = streams[stream].first;
+        for (int c = first; c < first + streams[stream].components; c++)
+            mend_component(b, c, at, domain[stream].low, domain[stream].high, values[c], is_finite);
     }
+    uint32_t invalid = zero_vectors(values, COMPONENT_NORMAL);
+    if (read & FACET_STREAM_TANGENT) invalid |= zero_vectors(values, COMPONENT_TANGENT);
+    EACH(k) invalid |= (~vm_bits(vf_eq(is_finite[k], splat(0.0f))) & LANES(VF_LANES)) << k * VF_LANES;
     return invalid;
 }
 
@@ -176,13 +232,15 @@ static __attribute__((noinline)) uint32_t shade_mended(const job *j, const block
     if (!covered) return 0;
 
     float values[COMPONENT_COUNT][GROUP], result[3][GROUP];
+    const float *component[COMPONENT_COUNT];
     uint64_t invalid = mend(j, b, at, values);
     block m;
     m.i = b->i + at;
     m.count = GROUP;
     m.covered = LANES(GROUP);
     m.mended = true;
-    for (int c = 0; c < COMPONENT_COUNT; c++) m.component[c] = values[c];
+    for (int c = 0; c < COMPONENT_COUNT; c++) component[c] = values[c];
+    m.component = component;
     for (int c = 0; c < 3; c++) {
         m.radiance[c] = result[c];
         for (size_t lane = 0; lane < GROUP; lane++)
@@ -206,37 +264,118 @@ OP uint64_t covered_samples(const job *j, size_t i, size_t count)
     return bits & ALL_SAMPLES(count);
 }
 
+/* What is uniform, and what is derived, of a block. */
 typedef float block_values[COMPONENT_COUNT][BLOCK];
 
-/* Fills blocks with what is uniform, the material's numbers too. */
-OP void open_uniform(const job *j, block_values values)
+/* The value of a stream that another is derived from, in its domain; NaN where it is not finite. Zeros past the end. */
+OP vf source(const block *b, int component, size_t at, float low, float high)
 {
-    const size_t count = j->count < BLOCK ? j->count : BLOCK;
-#define FACET_STREAM(id, ...)                                                                                         \
-    if (j->uniform & FACET_STREAM_##id)                                                                              \
-        for (int c = COMPONENT_##id; c <= COMPONENT_##id##_LAST; c++)                                                \
-            for (size_t k = 0; k < count; k += VF_LANES) vf_store(values[c] + k, splat(*j->component[c]));
-#include "streams.def"
+    const float *from = b->component[component] + at;
+    float padded[GROUP];
+    if (b->count - at < VF_LANES) {
+        pad_light(from, b->count - at, padded);
+        from = padded;
+    }
+    vf a = vf_load(from);
+    return clamp(a, low, high) + (a - a);
 }
 
-void KERNEL(const job *j)
+#define SOURCE_1(id, low, high) source(b, COMPONENT_##id, at, low, high)
+#define SOURCE_3(id, low, high)                                                                                       \
+    (vf3){ source(b, COMPONENT_##id, at, low, high), source(b, COMPONENT_##id + 1, at, low, high),                   \
+           source(b, COMPONENT_##id + 2, at, low, high) }
+#define VALUE_1 vf
+#define VALUE_3 vf3
+#define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
+    OP VALUE_##components source_##id(const plan_fields *p, const block *b, size_t at)                                \
+    {                                                                                                                \
+        (void)p;                                                                                                     \
+        return SOURCE_##components(id, low, high);                                                                   \
+    }
+#include "streams.def"
+
+/* Where parameters that follow from others go. */
+typedef struct { const float **component; float (*values)[BLOCK]; } place;
+
+OP void keep_derived(place to, int component, size_t at, vf a)
 {
+    vf_store(to.values[component] + at, a);
+    to.component[component] = to.values[component];
+}
+
+OP void keep_derived3(place to, int component, size_t at, vf3 a)
+{
+    keep_derived(to, component, at, a.x);
+    keep_derived(to, component + 1, at, a.y);
+    keep_derived(to, component + 2, at, a.z);
+}
+
+OP vf derived_roughness(const plan_fields *p, const block *b, size_t at)
+{
+    if (p->convention == FACET_CONVENTION_METALLIC_ROUGHNESS) return source_ROUGHNESS(p, b, at);
+    return 1.0f - source_GLOSSINESS(p, b, at);
+}
+
+OP vf3 derived_f0(const plan_fields *p, const block *b, size_t at)
+{
+    if (p->convention == FACET_CONVENTION_METALLIC_ROUGHNESS)
+        return f0_of_base(source_BASE(p, b, at), source_METALLIC(p, b, at), source_SPECULAR_LEVEL(p, b, at));
+    vf3 eta = source_ETA(p, b, at), k = source_K(p, b, at);
+    vf o = splat(p->eta_outside);
+    return (vf3){ f0_of_index(eta.x, k.x, o), f0_of_index(eta.y, k.y, o), f0_of_index(eta.z, k.z, o) };
+}
+
+OP vf3 derived_eta(const plan_fields *p, const block *b, size_t at)
+{
+    vf3 f0 = source_F0(p, b, at), eta = { eta_of_f0(f0.x), eta_of_f0(f0.y), eta_of_f0(f0.z) };
+    return clamp3(scale3(eta, splat(p->eta_outside)), FACET_ETA_FLOOR, FACET_ETA_CAP);
+}
+
+/* Parameters that follow from other streams, a block of them. Out of the way of materials that have none. */
+static __attribute__((noinline)) void derive(const plan_fields *p, const block *b, place to)
+{
+    for (size_t at = 0; at < b->count; at += VF_LANES) {
+        if (p->derived & FACET_STREAM_ALBEDO)
+            keep_derived3(to, COMPONENT_ALBEDO, at, albedo_of_base(source_BASE(p, b, at), source_METALLIC(p, b, at)));
+        if (p->derived & FACET_STREAM_ALPHA)
+            keep_derived(to, COMPONENT_ALPHA, at, alpha_of_roughness(derived_roughness(p, b, at)));
+        if (p->derived & FACET_STREAM_ALPHA_Y) keep_derived(to, COMPONENT_ALPHA_Y, at, source_ALPHA(p, b, at));
+        if (p->derived & FACET_STREAM_F0) keep_derived3(to, COMPONENT_F0, at, derived_f0(p, b, at));
+        if (p->derived & FACET_STREAM_ETA) keep_derived3(to, COMPONENT_ETA, at, derived_eta(p, b, at));
+    }
+}
+
+/* Fills blocks with what is uniform, the material's numbers too. */
+OP void open_uniform(job *j, block_values values)
+{
+    const size_t count = j->count < BLOCK ? j->count : BLOCK;
+    for (uint32_t left = j->uniform; left; left &= left - 1) {
+        const int stream = __builtin_ctz(left);
+        for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
+            for (size_t k = 0; k < count; k += VF_LANES) vf_store(values[c] + k, splat(*j->component[c]));
+            j->component[c] = values[c];
+        }
+    }
+}
+
+void KERNEL(job *j)
+{
+    const plan_fields *p = j->plan;
     block_shader *shader = choose_shader(j);
-    block_values uniform;
+    block_values values;
     size_t invalid = 0;
-    open_uniform(j, uniform);
+    open_uniform(j, values);
 
     for (size_t i = 0; i < j->count; i += BLOCK) {
         block b;
+        b.component = j->component;
         b.i = i;
         b.count = j->count - i < BLOCK ? j->count - i : BLOCK;
         b.covered = covered_samples(j, i, b.count);
         b.mended = false;
         for (int c = 0; c < 3; c++) b.radiance[c] = j->radiance[c] + i;
-#define FACET_STREAM(id, ...)                                                                                         \
-        for (int c = COMPONENT_##id; c <= COMPONENT_##id##_LAST; c++)                                                \
-            b.component[c] = j->uniform & FACET_STREAM_##id ? uniform[c] : j->component[c] ? j->component[c] + i : 0;
-#include "streams.def"
+        for (int c = 0; c < j->moving_count && i > 0; c++) j->component[j->moving[c]] += BLOCK;
+        if (p->derived) derive(p, &b, (place){ j->component, values });
         uint64_t bad = 0;
         for (size_t at = 0; at < b.count;) {
             at = shader(j, &b, at, &bad);

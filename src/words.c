@@ -19,6 +19,20 @@ static const row fresnel_rows[] = {
 #define FACET_FRESNEL(id, name, word, ...) [FACET_FRESNEL_##id] = { word, FACET_HAS(name) },
 #include "models.def"
 };
+static const row convention_rows[] = {
+    [FACET_CONVENTION_DIRECT] = { "direct", true },
+    [FACET_CONVENTION_METALLIC_ROUGHNESS] = { "metallic-roughness", true },
+    [FACET_CONVENTION_SPECULAR_GLOSSINESS] = { "specular-glossiness", true },
+};
+static const row light_rows[] = {
+    [FACET_LIGHT_DIRECTIONAL] = { "directional", true },
+    [FACET_LIGHT_POINT] = { "point", true },
+    [FACET_LIGHT_SPOT] = { "spot", true },
+};
+static const row metal_rows[] = {
+#define FACET_METAL(id, name, word, ...) [FACET_METAL_##id] = { word, true },
+#include "metals.def"
+};
 static const row arch_rows[] = {
     [FACET_ARCH_BEST] = { "best", true },
 #define FACET_ARCH(id, name, word, needs, lanes) [FACET_ARCH_##id] = { word, FACET_BUILT(FACET_ARCH_##name) },
@@ -47,7 +61,8 @@ _Static_assert(COUNT(diffuse_rows) == DIFFUSE_ROWS && COUNT(distribution_rows) =
 static const struct { const row *rows; int count; } kinds[] = {
 #define KIND(id, rows) [FACET_KIND_##id] = { rows, (int)COUNT(rows) }
     KIND(DIFFUSE, diffuse_rows), KIND(DISTRIBUTION, distribution_rows), KIND(MASKING, masking_rows),
-    KIND(FRESNEL, fresnel_rows), KIND(ARCH, arch_rows), KIND(TIER, tier_rows), KIND(STATUS, status_rows),
+    KIND(FRESNEL, fresnel_rows), KIND(CONVENTION, convention_rows), KIND(LIGHT, light_rows), KIND(METAL, metal_rows),
+    KIND(ARCH, arch_rows), KIND(TIER, tier_rows), KIND(STATUS, status_rows),
 };
 
 static const row *find(facet_kind kind, int value)
