@@ -36,7 +36,7 @@ LIBRARY := $(COMMON) -fPIC -fvisibility=hidden -ffreestanding -fno-math-errno -f
     $(ARCHES:%=-DFACET_ARCH_%=1) $(TIERS:%=-DFACET_TIER_%=1) \
     $(if $(MODELS),-DFACET_FILTERED $(patsubst %,-DFACET_WITH_%=1,none $(subst -,_,$(MODELS))))
 
-SOURCES := cpu describe encode kernels plan shade words
+SOURCES := convert cpu describe encode kernels metals plan shade words
 KERNELS := $(foreach arch,$(ARCHES),$(TIERS:%=f32_$(arch)_%))
 OBJECTS := $(SOURCES:%=$(BUILD)/obj/%.o) $(KERNELS:%=$(BUILD)/obj/%.o)
 
@@ -51,9 +51,10 @@ $(BUILD)/flags: FORCE
 	@echo '$(CC) $(CFLAGS) $(LDFLAGS) $(ARCHES) $(TIERS) $(MODELS)' | cmp -s - $@ || \
 	    echo '$(CC) $(CFLAGS) $(LDFLAGS) $(ARCHES) $(TIERS) $(MODELS)' > $@
 
+# -O3 is for what is called often.
 $(BUILD)/obj/%.o: src/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(say)$(CC) $(LIBRARY) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
+	$(say)$(CC) $(LIBRARY) $(CPPFLAGS) $(if $(filter shade encode,$*),$(CFLAGS),$(CFLAGS:-O3=-Os)) -c $< -o $@
 
 # f32_ARCH_TIER.o: one kernel.
 part = $(word $1,$(subst _, ,$*))
@@ -91,7 +92,9 @@ $(BUILD)/tests/%.o: tests/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(say)$(CC) $(PROGRAM) $(CPPFLAGS) $(CFLAGS) -c $< -o $@
 
-DEMO := demo demo_options shading_rate console mesh obj teapot raster image
+# Option words, which facet-demo and relight share.
+WORDS := shading_options model_words command_line console
+DEMO  := demo demo_options $(WORDS) shading_rate balls rigs mesh obj teapot raster image
 
 $(BUILD)/facet-demo: $(DEMO:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
@@ -125,26 +128,31 @@ bench: $(BUILD)/facet-bench ## times every kernel and the baselines, interleaved
 
 # ---- Tests -----------------------------------------------------------------------------------------------------------
 
-# facet-check is every file of tests/ but other programs' and ops_arch.c, which is compiled for each kernel.
-SUITES := $(filter-out consumer exr exr_variants filtered ops_arch readme_tables relight, \
+# facet-check is every file of tests/ but other programs' and *_arch.c, which are compiled for each kernel.
+SUITES := $(filter-out consumer exr exr_variants filtered metals_table %_arch readme_tables relight, \
     $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
-OPS    := $(foreach arch,$(ARCHES),$(TIERS:%=ops_$(arch)_%))
+LAYERS := $(foreach arch,$(ARCHES),$(TIERS:%=ops_$(arch)_%) $(TIERS:%=elementary_$(arch)_%))
 
 # An emulator seldom finds the shared libraries of the other machine.
-$(BUILD)/facet-check $(BUILD)/facet-demo $(BUILD)/readme-tables: private LDFLAGS += $(if $(RUN),-static)
+$(addprefix $(BUILD)/,facet-check facet-demo metals-table readme-tables): private LDFLAGS += $(if $(RUN),-static)
 
 # ops_ARCH_TIER.o: the vector layer's operations as functions.
 $(BUILD)/tests/ops_%.o: tests/ops_arch.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(say)$(CC) $(PROGRAM) $(CPPFLAGS) $(CFLAGS) $(KERNEL_FLAGS) -DOPS_TABLE=ops_$* -c $< -o $@
 
-$(BUILD)/facet-check: $(SUITES:%=$(BUILD)/tests/%.o) $(OPS:%=$(BUILD)/tests/%.o) $(BUILD)/libfacet.a
+# elementary_ARCH_TIER.o: the functions made of them.
+$(BUILD)/tests/elementary_%.o: tests/elementary_arch.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(say)$(CC) $(PROGRAM) $(CPPFLAGS) $(CFLAGS) $(KERNEL_FLAGS) -DELEMENTARY_TABLE=elementary_$* -c $< -o $@
+
+$(BUILD)/facet-check: $(SUITES:%=$(BUILD)/tests/%.o) $(LAYERS:%=$(BUILD)/tests/%.o) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm -lpthread
 
 # Asked for when it is needed, as `make deps` may have come first.
 $(BUILD)/tests/relight.o $(BUILD)/tests/exr.o: PROGRAM = $(COMMON) -Isrc $(shell pkg-config --cflags OpenEXR)
 
-$(BUILD)/relight: $(BUILD)/tests/relight.o $(BUILD)/tests/exr.o $(BUILD)/libfacet.a
+$(BUILD)/relight: $(BUILD)/tests/relight.o $(BUILD)/tests/exr.o $(WORDS:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(shell pkg-config --libs OpenEXR) -lm
 
 check: ## every test that this machine can run; `make deps check` leaves none out
@@ -153,6 +161,13 @@ check: ## every test that this machine can run; `make deps check` leaves none ou
 
 update: $(BUILD)/facet-check ## measures tests/accuracy.tsv and tests/golden.txt anew
 	$(RUN) $(BUILD)/facet-check --update accuracy golden
+
+$(BUILD)/metals-table: $(BUILD)/tests/metals_table.o $(BUILD)/tests/spectra.o $(BUILD)/libfacet.a
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
+
+metals: $(BUILD)/metals-table ## writes src/metals.def anew from tests/data/metals
+	@$(RUN) $< tests/data/metals > $(BUILD)/metals.def
+	@cmp -s $(BUILD)/metals.def src/metals.def || cp $(BUILD)/metals.def src/metals.def
 
 # README's tables between <!-- NAME --> and <!-- /NAME -->.
 README := README.md
@@ -205,7 +220,7 @@ uninstall: ## removes what install put there
 clean: ## removes what was built
 	rm -rf '$(BUILD)'
 
-.PHONY: readme update
+.PHONY: metals readme update
 
 help: ## lists the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 12

@@ -29,7 +29,7 @@ bool console_error(const char *format, ...)
         if (iscntrl((unsigned char)*c))
             *c = '?';
     console_clear();
-    fprintf(stderr, "facet-demo: %s\n", line);
+    fprintf(stderr, "%s: %s\n", console_program, line);
     return false;
 }
 

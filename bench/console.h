@@ -1,11 +1,14 @@
-/* What the demo says on stderr, and its clock. */
+/* What a program says on stderr, and its clock. */
 #ifndef CONSOLE_H
 #define CONSOLE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
-/* One line, "facet-demo: ...", with control characters shown as '?'. Returns false, for callers to return. */
+/* The program's name: each defines its own. */
+extern const char console_program[];
+
+/* One line, "PROGRAM: ...", with control characters shown as '?'. Returns false, for callers to return. */
 bool console_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Starts the time after which console_progress may speak. */

@@ -1,4 +1,5 @@
 /* facet-demo: a small software rasterizer that shades its tiles with facet, as a rasterizer backend would. */
+#include "balls.h"
 #include "console.h"
 #include "demo_options.h"
 #include "image.h"
@@ -17,15 +18,21 @@ static const float grid_sigma[] = {0.0f, 0.3f, 0.6f, 1.0f};
 enum {
     GRID_COLUMNS = sizeof grid_alpha / sizeof *grid_alpha,
     GRID_ROWS = sizeof grid_sigma / sizeof *grid_sigma,
-    PANEL_LIMIT = GRID_COLUMNS * GRID_ROWS
+    GRID = GRID_COLUMNS * GRID_ROWS,
+    PLAN_LIMIT = GRID > BALL_LIMIT ? GRID : BALL_LIMIT
 };
 
-/* What one run renders: the same view in every panel, each with its own plan. */
+const char console_program[] = "facet-demo";
+
+/* What one run renders: the same view in every panel, each with its own plan; or one panel, a plan for every part of
+ * the mesh. */
 typedef struct scene {
     const options *options;
     mesh mesh;
     raster raster;
-    facet_plan plans[PANEL_LIMIT];
+    facet_plan plans[PLAN_LIMIT];
+    size_t plan_count;
+    uint32_t streams;                    /* FACET_STREAM_*: of the G-buffer, beside normals and views */
     size_t columns, rows;                /* of panels */
     size_t width, height;                /* of the picture, pixels */
     uint8_t *rgba;
@@ -34,27 +41,38 @@ typedef struct scene {
     size_t covered;
 } scene;
 
-static bool has_sigma(facet_diffuse model)
+/* Rough, whatever the model was. */
+static void roughen(facet_material *m, float sigma)
 {
-    return model != FACET_DIFFUSE_NONE && model != FACET_DIFFUSE_LAMBERT;
+    bool smooth = !(shading_reads(m) & FACET_STREAM_SIGMA);
+    if (smooth)
+        m->diffuse.model = FACET_DIFFUSE_OREN_NAYAR;
+    if (smooth || !(m->diffuse.sigma > 0))
+        m->diffuse.sigma = sigma;
 }
 
 static facet_material panel_material(const options *o, size_t column, size_t row)
 {
-    facet_material m = o->material;
-    bool rough = o->layout == LAYOUT_GRID || (o->layout == LAYOUT_COMPARE && column == 1);
-    if (rough && !has_sigma(m.diffuse.model))
-        m.diffuse.model = FACET_DIFFUSE_OREN_NAYAR;
+    facet_material m = o->shading.material;
     if (o->layout == LAYOUT_COMPARE && column == 0)
         m.diffuse.model = FACET_DIFFUSE_LAMBERT;
-    if (o->layout == LAYOUT_COMPARE && column == 1 && !(m.diffuse.sigma > 0))
-        m.diffuse.sigma = 0.7f;
+    if (o->layout == LAYOUT_COMPARE && column == 1)
+        roughen(&m, 0.7f);
     if (o->layout == LAYOUT_GRID) {
+        roughen(&m, 0);
+        m.diffuse.sigma = grid_sigma[row];
         m.specular.model = FACET_DISTRIBUTION_GGX;
         m.specular.alpha = grid_alpha[column];
-        m.diffuse.sigma = grid_sigma[row];
+        m.convention.roughness = facet_roughness_from_alpha(grid_alpha[column]);
+        m.convention.glossiness = 1 - m.convention.roughness;
     }
     return m;
+}
+
+static facet_material plan_material(const scene *s, size_t plan)
+{
+    const options *o = s->options;
+    return ball_count(o->layout) ? ball_material(o, plan) : panel_material(o, plan % s->columns, plan / s->columns);
 }
 
 static bool facet_refused(const facet_error *error)
@@ -64,17 +82,21 @@ static bool facet_refused(const facet_error *error)
     return console_error("%s", text);
 }
 
-static bool plan_panels(scene *s)
+static bool make_plans(scene *s)
 {
     const options *o = s->options;
     s->columns = o->layout == LAYOUT_GRID ? GRID_COLUMNS : o->layout == LAYOUT_COMPARE ? 2 : 1;
     s->rows = o->layout == LAYOUT_GRID ? GRID_ROWS : 1;
-    for (size_t i = 0; i < s->columns * s->rows; i++) {
-        facet_material material = panel_material(o, i % s->columns, i / s->columns);
+    s->plan_count = s->columns * s->rows * s->mesh.parts;
+    for (size_t i = 0; i < s->plan_count; i++) {
+        facet_material material = plan_material(s, i);
         facet_error error;
-        if (facet_plan_init(&s->plans[i], &material, o->target, &error) != FACET_OK)
+        if (facet_plan_init(&s->plans[i], &material, o->shading.target, &error) != FACET_OK)
             return facet_refused(&error);
+        s->streams |= shading_reads(&material) & FACET_STREAM_TANGENT;
     }
+    for (size_t i = 0; i < o->shading.light_count; i++)
+        s->streams |= light_has_position(&o->shading.lights[i]) ? FACET_STREAM_POSITION : 0u;
     return true;
 }
 
@@ -148,16 +170,32 @@ static void keep_radiance(scene *s, const tile *t, size_t first)
                 t->pixel[c][i / t->width * TILE_WIDTH + i % t->width];
 }
 
+/* Shades the tile's G-buffer for one panel, part by part: a part is what the coverage leaves. */
+static bool shade_parts(scene *s, tile *t, size_t panel)
+{
+    facet_batch batch = tile_batch(s->options, s->streams, &t->g, t->radiance);
+    facet_error error;
+    uint8_t coverage[TILE_SAMPLES / 8];
+    for (size_t part = 0; part < s->mesh.parts; part++) {
+        bool seen = t->g.covered;
+        if (s->mesh.parts > 1) {
+            seen = seen && raster_part(&t->g, part, coverage);
+            batch.coverage = coverage;
+        }
+        if (seen && facet_shade(&s->plans[panel * s->mesh.parts + part], &batch, &error) != FACET_OK)
+            return facet_refused(&error);
+    }
+    return true;
+}
+
 /* Shades and encodes the tile's G-buffer for one panel. */
 static bool finish_tile(scene *s, tile *t, size_t panel)
 {
     const options *o = s->options;
     size_t first = (panel / s->columns * o->height + t->y) * s->width + panel % s->columns * o->width + t->x;
-    facet_batch batch = tile_batch(o, &t->g, t->radiance);
-    facet_error error;
     double start = console_seconds();
-    if (t->g.covered && facet_shade(&s->plans[panel], &batch, &error) != FACET_OK)
-        return facet_refused(&error);
+    if (!shade_parts(s, t, panel))
+        return false;
     double shaded = console_seconds();
     s->shade_seconds += shaded - start;
     s->covered += t->g.covered;
@@ -194,7 +232,7 @@ static bool shade_frame(scene *s)
         t.width = o->width - t.x < TILE_WIDTH / o->samples ? o->width - t.x : TILE_WIDTH / o->samples;
         t.height = o->height - t.y < TILE_HEIGHT / o->samples ? o->height - t.y : TILE_HEIGHT / o->samples;
         double start = console_seconds();
-        raster_tile(&s->raster, &s->mesh, i % columns, i / columns, &t.g);
+        raster_tile(&s->raster, &s->mesh, i % columns, i / columns, s->streams, &t.g);
         s->raster_seconds += console_seconds() - start;
         for (size_t panel = 0; panel < s->columns * s->rows; panel++)
             if (!finish_tile(s, &t, panel))
@@ -223,7 +261,8 @@ static bool allocate(scene *s)
 static bool render(scene *s)
 {
     const options *o = s->options;
-    if (!mesh_open(&s->mesh, o->mesh, o->flat) || !plan_panels(s) || !allocate(s))
+    bool opened = ball_count(o->layout) ? ball_mesh(&s->mesh, o->layout) : mesh_open(&s->mesh, o->mesh, o->flat);
+    if (!opened || !make_plans(s) || !allocate(s))
         return false;
     mesh_orbit(&s->mesh, (double)o->azimuth, (double)o->elevation, (double)o->distance);
     draw(s);
@@ -267,9 +306,11 @@ static void report(const scene *s, double write_seconds)
     }
     printf("rasterize %.1f ms, shade %.1f ms, average and encode %.1f ms, write %.1f ms\n", 1e3 * s->raster_seconds,
            1e3 * s->shade_seconds, 1e3 * s->encode_seconds, 1e3 * write_seconds);
-    report_plan(&s->plans[0], o->layout == LAYOUT_ONE ? "plan" : "plan of the first panel");
-    if (o->layout != LAYOUT_ONE)
-        report_plan(&s->plans[s->columns * s->rows - 1], "plan of the last panel");
+    if (s->mesh.parts > 1)
+        ball_report(o->layout);
+    report_plan(&s->plans[0], s->plan_count == 1 ? "plan" : "first plan");
+    if (s->plan_count > 1)
+        report_plan(&s->plans[s->plan_count - 1], "last plan");
 }
 
 static bool run(scene *s)
@@ -282,8 +323,8 @@ static bool run(scene *s)
         return false;
     console_clear();
     report(s, console_seconds() - start);
-    facet_material material = panel_material(s->options, 0, 0);
-    return !(s->options->seconds > 0) || shading_rate(s->options, &material, &s->mesh, &s->raster);
+    facet_material material = plan_material(s, 0);
+    return !(s->options->seconds > 0) || shading_rate(s->options, &material, s->streams, &s->mesh, &s->raster);
 }
 
 int main(int count, char **arguments)

@@ -32,16 +32,27 @@ bool mesh_add_position(mesh *m, const double position[3])
     return true;
 }
 
+/* Appends a vector made unit. */
+static bool add_direction(float (**array)[3], size_t *room, size_t *count, const double direction[3])
+{
+    void *grown = with_room(*array, room, *count, sizeof **array);
+    if (!grown)
+        return false;
+    *array = grown;
+    double unit[3] = {direction[0], direction[1], direction[2]};
+    vector_normalise(unit);
+    vector_narrow((*array)[(*count)++], unit);
+    return true;
+}
+
 bool mesh_add_normal(mesh *m, const double normal[3])
 {
-    void *array = with_room(m->normals, &m->normal_room, m->normal_count, sizeof *m->normals);
-    if (!array)
-        return false;
-    m->normals = array;
-    double unit[3] = {normal[0], normal[1], normal[2]};
-    vector_normalise(unit);
-    vector_narrow(m->normals[m->normal_count++], unit);
-    return true;
+    return add_direction(&m->normals, &m->normal_room, &m->normal_count, normal);
+}
+
+bool mesh_add_tangent(mesh *m, const double tangent[3])
+{
+    return add_direction(&m->tangents, &m->tangent_room, &m->tangent_count, tangent);
 }
 
 bool mesh_add_triangle(mesh *m, const mesh_triangle *t)
@@ -58,14 +69,16 @@ void mesh_free(mesh *m)
 {
     free(m->positions);
     free(m->normals);
+    free(m->tangents);
     free(m->triangles);
     *m = (mesh){0};
 }
 
 /* ---- Parametric surfaces --------------------------------------------------------------------------------------- */
 
-/* A point and a normal, of any length, at (u, v) in the unit square. */
-typedef void surface(const void *context, double u, double v, double position[3], double normal[3]);
+/* A point, a normal and the tangent along u, of any length, at (u, v) in the unit square. */
+typedef void surface(const void *context, double u, double v, double position[3], double normal[3],
+                     double tangent[3]);
 
 static bool add_cell(mesh *m, size_t corner, size_t stride)
 {
@@ -74,14 +87,15 @@ static bool add_cell(mesh *m, size_t corner, size_t stride)
     return mesh_add_triangle(m, &halves[0]) && mesh_add_triangle(m, &halves[1]);
 }
 
-/* Positions and normals are added in pairs, so that one index serves both. */
+/* Positions, normals and tangents are added together, so that one index serves all. */
 static bool add_surface(mesh *m, size_t columns, size_t rows, surface *at, const void *context)
 {
     size_t first = m->position_count, stride = columns + 1;
     for (size_t i = 0; i < stride * (rows + 1); i++) {
-        double position[3], normal[3];
-        at(context, (double)(i % stride) / (double)columns, (double)(i / stride) / (double)rows, position, normal);
-        if (!mesh_add_position(m, position) || !mesh_add_normal(m, normal))
+        double position[3], normal[3], tangent[3];
+        at(context, (double)(i % stride) / (double)columns, (double)(i / stride) / (double)rows, position, normal,
+           tangent);
+        if (!mesh_add_position(m, position) || !mesh_add_normal(m, normal) || !mesh_add_tangent(m, tangent))
             return false;
     }
     for (size_t i = 0; i < columns * rows; i++)
@@ -90,13 +104,28 @@ static bool add_surface(mesh *m, size_t columns, size_t rows, surface *at, const
     return true;
 }
 
-static void sphere_at(const void *context, double u, double v, double position[3], double normal[3])
+typedef struct sphere {
+    double centre[3], radius;
+} sphere;
+
+enum { SPHERE_COLUMNS = 128, SPHERE_ROWS = 64 };
+
+static void sphere_at(const void *context, double u, double v, double position[3], double normal[3],
+                      double tangent[3])
 {
-    (void)context;
-    position[0] = sin(PI * v) * cos(2 * PI * u);
-    position[1] = cos(PI * v);
-    position[2] = -sin(PI * v) * sin(2 * PI * u);
-    memcpy(normal, position, 3 * sizeof *normal);
+    const sphere *s = context;
+    normal[0] = sin(PI * v) * cos(2 * PI * u);
+    normal[1] = cos(PI * v);
+    normal[2] = -sin(PI * v) * sin(2 * PI * u);
+    tangent[0] = -sin(2 * PI * u), tangent[1] = 0, tangent[2] = -cos(2 * PI * u);
+    memcpy(position, s->centre, 3 * sizeof *position);
+    vector_add_scaled(position, s->radius, normal);
+}
+
+static bool add_sphere(mesh *m, const double centre[3], double radius)
+{
+    const sphere s = {{centre[0], centre[1], centre[2]}, radius};
+    return add_surface(m, SPHERE_COLUMNS, SPHERE_ROWS, sphere_at, &s);
 }
 
 /* Cubic Bernstein polynomials and their derivatives. */
@@ -128,10 +157,11 @@ static void patch_sum(const double patch[4][4][3], const double u[4], const doub
 
 /* On the lid's tip and in the middle of the bottom the row v = 0 is a point and d/du vanishes: near it, d/du is
  * v d2/dudv, so the latter stands for it. */
-static void patch_at(const void *context, double u, double v, double position[3], double normal[3])
+static void patch_at(const void *context, double u, double v, double position[3], double normal[3],
+                     double along_u[3])
 {
     const double(*patch)[4][3] = context;
-    double bu[4], du[4], bv[4], dv[4], along_u[3], along_v[3];
+    double bu[4], du[4], bv[4], dv[4], along_v[3];
     bernstein(u, bu, du);
     bernstein(v, bv, dv);
     patch_sum(patch, bu, bv, position);
@@ -211,7 +241,7 @@ static double corner_normal(const mesh *m, const mesh_triangle *t, int i, double
 
 static bool flatten(mesh *m)
 {
-    m->normal_count = 0;
+    m->normal_count = m->tangent_count = 0;
     for (size_t i = 0; i < m->triangle_count; i++) {
         mesh_triangle *t = &m->triangles[i];
         double normal[3];
@@ -274,20 +304,41 @@ static bool complete_normals(mesh *m)
     return true;
 }
 
+/* To every normal that has none, the tangent y x n, or x where n is along y. */
+static bool complete_tangents(mesh *m)
+{
+    for (size_t i = m->tangent_count; i < m->normal_count; i++) {
+        const float *n = m->normals[i];
+        double around[3] = {(double)n[2], 0, -(double)n[0]};
+        if (!mesh_add_tangent(m, vector_dot(around, around) > 0 ? around : (const double[3]){1, 0, 0}))
+            return false;
+    }
+    return true;
+}
+
 /* ---- Opening and turning --------------------------------------------------------------------------------------- */
 
 bool mesh_open(mesh *m, const char *name, bool flat)
 {
-    *m = (mesh){0};
+    *m = (mesh){.parts = 1};
     if (!strcmp(name, "teapot") ? !add_teapot(m)
-        : !strcmp(name, "sphere") ? !add_surface(m, 128, 64, sphere_at, NULL) : false)
+        : !strcmp(name, "sphere") ? !add_sphere(m, (const double[3]){0, 0, 0}, 1) : false)
         return console_error("not enough memory for the %s", name);
     if (!m->triangle_count && !obj_read(m, name))
         return false;
     if (!fit(m))
         return console_error("%s: all faces lie in one point", name);
-    if (flat ? !flatten(m) : !complete_normals(m))
+    if (!(flat ? flatten(m) : complete_normals(m)) || !complete_tangents(m))
         return console_error("%s: not enough memory for normals", name);
+    return true;
+}
+
+bool mesh_spheres(mesh *m, const double (*centres)[3], size_t count, double radius)
+{
+    *m = (mesh){.parts = count};
+    for (size_t i = 0; i < count; i++)
+        if (!add_sphere(m, centres[i], radius))
+            return console_error("not enough memory for %zu spheres", count);
     return true;
 }
 
@@ -311,6 +362,7 @@ void mesh_orbit(mesh *m, double azimuth, double elevation, double distance)
 {
     turn_all(m->positions, m->position_count, azimuth, elevation);
     turn_all(m->normals, m->normal_count, azimuth, elevation);
+    turn_all(m->tangents, m->tangent_count, azimuth, elevation);
     for (size_t i = 0; i < m->position_count; i++)
         m->positions[i][2] -= (float)distance;
 }

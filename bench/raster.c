@@ -1,4 +1,5 @@
 #include "raster.h"
+#include "facet.h"
 #include "vector.h"
 
 #include <stdlib.h>
@@ -191,47 +192,98 @@ static void agree_with_facing(double normal[3], const double view[3], const doub
     vector_normalise(normal);
 }
 
-/* Normal and vector to the eye where a ray meets a triangle. */
-static void interpolate(const mesh *m, const mesh_triangle *t, const double ray[3], double normal[3], double view[3])
+typedef struct surface_point {
+    double normal[3], view[3], position[3], tangent[3];
+} surface_point;
+
+/* The mean of three vectors by a triangle's weights. */
+static void blend(float (*const vectors)[3], const uint32_t index[3], const double weight[2], double out[3])
 {
-    double p[3][3], n[3][3], e1[3], e2[3], weight[2];
-    for (int i = 0; i < 3; i++) {
-        vector_widen(p[i], m->positions[t->position[i]]);
-        vector_widen(n[i], m->normals[t->normal[i]]);
+    double v[3][3];
+    for (int i = 0; i < 3; i++)
+        vector_widen(v[i], vectors[index[i]]);
+    for (int c = 0; c < 3; c++)
+        out[c] = v[0][c] + weight[0] * (v[1][c] - v[0][c]) + weight[1] * (v[2][c] - v[0][c]);
+}
+
+/* Turned perpendicular to the normal. Where that leaves nothing, the axis that is least along the normal is. */
+static void set_perpendicular(double tangent[3], const double normal[3])
+{
+    int least = fabs(normal[0]) < fabs(normal[1]) ? 0 : 1;
+    least = fabs(normal[2]) < fabs(normal[least]) ? 2 : least;
+    vector_add_scaled(tangent, -vector_dot(tangent, normal), normal);
+    if (vector_dot(tangent, tangent) < 1e-12) {
+        memset(tangent, 0, 3 * sizeof *tangent);
+        tangent[least] = 1;
+        vector_add_scaled(tangent, -normal[least], normal);
     }
+    vector_normalise(tangent);
+}
+
+/* Where a ray meets a triangle. */
+static void interpolate(const mesh *m, const mesh_triangle *t, const double ray[3], uint32_t streams,
+                        surface_point *s)
+{
+    double p[3][3], e1[3], e2[3], weight[2];
+    for (int i = 0; i < 3; i++)
+        vector_widen(p[i], m->positions[t->position[i]]);
     vector_subtract(e1, p[1], p[0]);
     vector_subtract(e2, p[2], p[0]);
     intersect(ray, p[0], e1, e2, weight);
     for (int c = 0; c < 3; c++) {
-        view[c] = -(p[0][c] + weight[0] * e1[c] + weight[1] * e2[c]);
-        normal[c] = n[0][c] + weight[0] * (n[1][c] - n[0][c]) + weight[1] * (n[2][c] - n[0][c]);
+        s->position[c] = p[0][c] + weight[0] * e1[c] + weight[1] * e2[c];
+        s->view[c] = -s->position[c];
     }
-    vector_normalise(view);
-    vector_normalise(normal);
-    if (vector_dot(normal, normal) > 0)
-        agree_with_facing(normal, view, e1, e2);
+    vector_normalise(s->view);
+    blend(m->normals, t->normal, weight, s->normal);
+    vector_normalise(s->normal);
+    if (vector_dot(s->normal, s->normal) > 0)
+        agree_with_facing(s->normal, s->view, e1, e2);
+    if (streams & FACET_STREAM_TANGENT) {
+        blend(m->tangents, t->normal, weight, s->tangent);
+        set_perpendicular(s->tangent, s->normal);
+    }
 }
 
-static void put(gbuffer *g, size_t i, const double normal[3], const double view[3])
+static void put(gbuffer *g, size_t i, const surface_point *s, uint32_t streams, size_t part)
 {
     for (int c = 0; c < 3; c++) {
-        g->normal[c][i] = (float)normal[c];
-        g->view[c][i] = (float)view[c];
+        g->normal[c][i] = (float)s->normal[c];
+        g->view[c][i] = (float)s->view[c];
+        if (streams & FACET_STREAM_POSITION)
+            g->position[c][i] = (float)s->position[c];
+        if (streams & FACET_STREAM_TANGENT)
+            g->tangent[c][i] = (float)s->tangent[c];
     }
+    g->part[i] = (uint8_t)part;
     g->coverage[i / 8] = (uint8_t)(g->coverage[i / 8] | 1u << i % 8);
     g->covered++;
 }
 
-void raster_tile(const raster *r, const mesh *m, size_t column, size_t row, gbuffer *g)
+void raster_tile(const raster *r, const mesh *m, size_t column, size_t row, uint32_t streams, gbuffer *g)
 {
     memset(g, 0, sizeof *g);
     for (size_t i = 0; i < TILE_SAMPLES; i++) {
         size_t x = column * TILE_WIDTH + i % TILE_WIDTH, y = row * TILE_HEIGHT + i / TILE_WIDTH;
         if (x >= r->width || y >= r->height || !(r->depth[y * r->width + x] > 0))
             continue;
-        double normal[3], view[3], ray[3] = {((double)x + 0.5 - (double)r->width / 2) / r->focal,
-                                             ((double)r->height / 2 - 0.5 - (double)y) / r->focal, -1};
-        interpolate(m, &m->triangles[r->triangle[y * r->width + x]], ray, normal, view);
-        put(g, i, normal, view);
+        uint32_t triangle = r->triangle[y * r->width + x];
+        surface_point s;
+        double ray[3] = {((double)x + 0.5 - (double)r->width / 2) / r->focal,
+                         ((double)r->height / 2 - 0.5 - (double)y) / r->focal, -1};
+        interpolate(m, &m->triangles[triangle], ray, streams, &s);
+        put(g, i, &s, streams, triangle / (m->triangle_count / m->parts));
     }
+}
+
+size_t raster_part(const gbuffer *g, size_t part, uint8_t coverage[TILE_SAMPLES / 8])
+{
+    size_t count = 0;
+    memset(coverage, 0, TILE_SAMPLES / 8);
+    for (size_t i = 0; i < TILE_SAMPLES; i++)
+        if (g->coverage[i / 8] >> i % 8 & 1 && g->part[i] == part) {
+            coverage[i / 8] = (uint8_t)(coverage[i / 8] | 1u << i % 8);
+            count++;
+        }
+    return count;
 }

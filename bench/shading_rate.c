@@ -3,9 +3,10 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* TILES of the frame's tiles are shaded REPEATS times each while the cache holds them, as it does in a frame, where a
- * tile is shaded as soon as it is rasterized. All targets take turns; the best round of each counts. */
+/* Up to TILES of the frame's tiles are shaded REPEATS times each while the cache holds them, as it does in a frame,
+ * where a tile is shaded as soon as it is rasterized. All targets take turns; the best round of each counts. */
 enum { TILES = 48, REPEATS = 4, ROUNDS_LEAST = 3, TARGETS = 32 };
 
 typedef struct contender {
@@ -14,18 +15,24 @@ typedef struct contender {
     double best;                /* seconds */
 } contender;
 
-facet_batch tile_batch(const options *o, gbuffer *g, float radiance[3][TILE_SAMPLES])
+facet_batch tile_batch(const options *o, uint32_t streams, gbuffer *g, float radiance[3][TILE_SAMPLES])
 {
-    return (facet_batch){
-        .count = TILE_SAMPLES,
-        .normal = {g->normal[0], g->normal[1], g->normal[2]},
-        .view = {g->view[0], g->view[1], g->view[2]},
-        .lights = o->lights, .light_count = o->light_count,
-        .ambient = {o->ambient[0], o->ambient[1], o->ambient[2]},
+    const shading *s = &o->shading;
+    facet_batch batch = {
+        .count = TILE_SAMPLES, .lights = s->lights, .light_count = s->light_count,
         .coverage = g->covered == TILE_SAMPLES ? NULL : g->coverage,
-        .radiance = {radiance[0], radiance[1], radiance[2]},
         .flags = o->two_sided ? FACET_TWO_SIDED : 0,
     };
+    memcpy(batch.ambient, s->ambient, sizeof batch.ambient);
+    memcpy(batch.sh, s->sh, sizeof batch.sh);
+    for (int c = 0; c < 3; c++) {
+        batch.normal[c] = g->normal[c];
+        batch.view[c] = g->view[c];
+        batch.position[c] = streams & FACET_STREAM_POSITION ? g->position[c] : NULL;
+        batch.tangent[c] = streams & FACET_STREAM_TANGENT ? g->tangent[c] : NULL;
+        batch.radiance[c] = radiance[c];
+    }
+    return batch;
 }
 
 static size_t tile_count(const raster *r, size_t *columns)
@@ -43,15 +50,21 @@ static bool has_samples(const raster *r, size_t column, size_t row)
     return false;
 }
 
-/* Keeps up to TILES of the tiles that have samples, evenly spread; returns how many. */
-static size_t keep_tiles(const mesh *m, const raster *r, gbuffer *kept)
+/* With many lights fewer tiles make a round as long. */
+static size_t tile_limit(size_t lights)
+{
+    return lights > 8 ? (size_t)TILES * 8 / lights : TILES;
+}
+
+/* Keeps up to `most` of the tiles that have samples, evenly spread; returns how many. */
+static size_t keep_tiles(const mesh *m, const raster *r, uint32_t streams, size_t most, gbuffer *kept)
 {
     size_t columns, count = tile_count(r, &columns), used = 0, taken = 0, seen = 0;
     for (size_t i = 0; i < count; i++)
         used += has_samples(r, i % columns, i / columns);
-    for (size_t i = 0; i < count && taken < TILES; i++)
-        if (has_samples(r, i % columns, i / columns) && seen++ * TILES >= taken * used)
-            raster_tile(r, m, i % columns, i / columns, &kept[taken++]);
+    for (size_t i = 0; i < count && taken < most; i++)
+        if (has_samples(r, i % columns, i / columns) && seen++ * most >= taken * used)
+            raster_tile(r, m, i % columns, i / columns, streams, &kept[taken++]);
     return taken;
 }
 
@@ -67,24 +80,25 @@ static size_t list_contenders(const facet_material *material, contender *c)
 }
 
 /* Seconds for one round, or a negative number where facet refuses the batch. */
-static double shade_tiles(const options *o, const facet_plan *plan, gbuffer *tiles, size_t count)
+static double shade_tiles(const options *o, uint32_t streams, const facet_plan *plan, gbuffer *tiles, size_t count)
 {
     float radiance[3][TILE_SAMPLES];
     double start = console_seconds();
     for (size_t i = 0; i < count * REPEATS; i++) {
-        facet_batch batch = tile_batch(o, &tiles[i / REPEATS], radiance);
+        facet_batch batch = tile_batch(o, streams, &tiles[i / REPEATS], radiance);
         if (facet_shade(plan, &batch, NULL) != FACET_OK)
             return -1;
     }
     return console_seconds() - start;
 }
 
-static bool take_turns(const options *o, contender *c, size_t count, gbuffer *tiles, size_t tile_total)
+static bool take_turns(const options *o, uint32_t streams, contender *c, size_t count, gbuffer *tiles,
+                       size_t tile_total)
 {
     double end = console_seconds() + (double)o->seconds * (double)count / 2;
     for (int round = 0; round < ROUNDS_LEAST || console_seconds() < end; round++)
         for (size_t i = 0; i < count; i++) {
-            double seconds = shade_tiles(o, &c[i].plan, tiles, tile_total);
+            double seconds = shade_tiles(o, streams, &c[i].plan, tiles, tile_total);
             if (seconds < 0)
                 return console_error("facet refused the tiles of the frame");
             c[i].best = seconds < c[i].best ? seconds : c[i].best;
@@ -105,19 +119,20 @@ static void print_rates(const contender *c, size_t count, double samples, size_t
     printf("\n");
 }
 
-bool shading_rate(const options *o, const facet_material *material, const mesh *m, const raster *r)
+bool shading_rate(const options *o, const facet_material *material, uint32_t streams, const mesh *m, const raster *r)
 {
     static contender c[TARGETS];
     gbuffer *tiles = malloc(TILES * sizeof *tiles);
     if (!tiles)
         return console_error("not enough memory for the timing");
-    size_t taken = keep_tiles(m, r, tiles), count = list_contenders(material, c);
+    size_t taken = keep_tiles(m, r, streams, tile_limit(o->shading.light_count), tiles);
+    size_t count = list_contenders(material, c);
     double samples = 0;
     for (size_t i = 0; i < taken; i++)
         samples += (double)(tiles[i].covered * REPEATS);
-    bool timed = taken && take_turns(o, c, count, tiles, taken);
+    bool timed = taken && take_turns(o, streams, c, count, tiles, taken);
     if (timed)
-        print_rates(c, count, samples, o->light_count);
+        print_rates(c, count, samples, o->shading.light_count);
     if (!taken)
         printf("\nno sample is covered: nothing to time\n");
     free(tiles);

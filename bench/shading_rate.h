@@ -5,10 +5,11 @@
 #include "demo_options.h"
 #include "raster.h"
 
-/* The batch of a tile: its G-buffer, the lights, and where the radiance goes. */
-facet_batch tile_batch(const options *o, gbuffer *g, float radiance[3][TILE_SAMPLES]);
+/* The batch of a tile: its G-buffer, with positions and tangents where `streams`, FACET_STREAM_*, has them; the light,
+ * and where the radiance goes. */
+facet_batch tile_batch(const options *o, uint32_t streams, gbuffer *g, float radiance[3][TILE_SAMPLES]);
 
 /* Prints the samples shaded a second for every arch of this CPU and both tiers. Says what is wrong. */
-bool shading_rate(const options *o, const facet_material *material, const mesh *m, const raster *r);
+bool shading_rate(const options *o, const facet_material *material, uint32_t streams, const mesh *m, const raster *r);
 
 #endif

@@ -123,45 +123,82 @@ else skip "bad files within $limit KiB of address space" "the program does not s
 
 # ---- Options ---------------------------------------------------------------------------------------------------------
 
-refused "unknown option" 'allowed: .*--size.*--arch' --nonsense
-refused "unknown short option" 'allowed: ' -x
+refused "unknown option" 'no such option; --help' --nonsense
+refused "unknown short option" 'no such option; --help' -x
 refused "two meshes" 'one mesh is allowed' teapot sphere
-refused "option without its value" 'needs a value' --alpha
+refused "a mesh for balls" 'have balls of their own' --metals teapot
+refused "panels of balls" '--grid: .* no panels' --grid --metals
+refused "option without its value" 'needs a value' --albedo
 refused "switch with a value" 'takes no value' --grid=3
-refused "light without direction" 'allowed: ' --light 0:0:0
-refused "light without irradiance" 'allowed: ' --light 0:0:1,0
+refused "light without direction" 'allowed: ' --light 0,0,0
+refused "light without irradiance" 'allowed: ' --light 0,0,1/0
+refused "65 lights" 'at most 64 lights' $(i=0; while [ $i -lt 65 ]; do echo --light 0,0,1; i=$(( i + 1 )); done)
 refused "picture too large" 'samples or pixels' --size 8192x8192
-refused "sigma beyond the model's domain" 'diffuse.sigma' --diffuse fujii --sigma 1.5
+refused "sigma beyond the model's domain" 'SIGMA from 0 to 1$' --diffuse fujii:1.5
+refused "a model without its numbers" 'phong needs its numbers: phong:EXPONENT' --specular phong
+refused "a conductor without a metal" 'needs its numbers: conductor:ETA/K.* or conductor:METAL' --fresnel conductor
+refused "no such metal" 'conductor:METAL.*: .*, gold, ' --fresnel conductor:brass
+refused "a surface without an albedo" 'lambert needs --albedo' --preset gold --diffuse lambert
+refused "a masking of other distributions" 'allowed with ggx: ' --masking smith-exact
+refused "a number that a convention has" 'stands in' --convention metallic-roughness:1/0/1 --albedo 1
+refused "a spot light inside out" 'INNER' --light spot:0,0,3/0,0,-1/20,10
 refused "picture that cannot be written" 'No such file' -o nowhere/picture.png
 refused "picture that is a directory" 'Is a directory' -o directory.obj
 
-for case in diffuse:phong specular:phong masking:none fresnel:exact arch:z80 tier:slow preset:teapot \
-            size:12 size:0x1 size:1x99999 size:-1x5 samples:3 alpha:2 alpha: alpha:-1 alpha:nan alpha:1x sigma:2 \
-            albedo:1:2 albedo:0:0:1.5 f0:x f90:-1 emission:-1 ambient:inf light:1:2 light:x exposure:-1 \
-            background:blue fov:0 distance:0 elevation:91 time:-1; do
+for case in diffuse:phong diffuse:fujii: diffuse:lambert:1 specular:velvet specular:ggx:2 specular:ggx:0 \
+            specular:ggx:-1 specular:ggx:nan specular:ggx:1x specular:ggx-anisotropic:0.1,0.2,0.3 \
+            specular:phong:0.5 specular:none:1 masking:none masking:smith:1 fresnel:exact fresnel:schlick:x \
+            fresnel:schlick:0.1/-1 fresnel:one:1 fresnel:schlick-f82:0.5 fresnel:dielectric:0 \
+            fresnel:conductor:gold/0 fresnel:conductor:1 scale:0 polarisation:-2 convention:metallic-roughness:1/0 \
+            convention:specular-glossiness:2 arch:z80 tier:slow preset:teapot rig:none size:12 size:0x1 \
+            size:1x99999 size:-1x5 samples:3 albedo:1,2 albedo:0,0,1.5 emission:-1 ambient:inf sh:1/2/3 light:1,2 \
+            light:x light:area:0,0,1 light:point:0,0,1/1/0 exposure:-1 background:blue fov:0 distance:0 \
+            elevation:91 time:-1; do
     refused "--${case%%:*} ${case#*:}" "--${case%%:*} .*allowed: " "--${case%%:*}" "${case#*:}"
 done
 
 why=
 demo --help > help.txt 2> err.txt && [ ! -s err.txt ] || why="status or stderr"
-for word in --size --light --preset --arch --tier --grid --compare --background --pfm --two-sided --help --list; do
+for word in --preset --metals --grazing --grid --compare --rig --size --samples --background --pfm --two-sided \
+            --list --help --diffuse --albedo --specular --masking --scale --fresnel --polarisation --convention \
+            --coupled --emission --light --ambient --sh --arch --tier; do
     grep -q -- "$word" help.txt || why="$why lacks $word"
 done
 verdict "--help" "$why"
 
 why=
 demo --list > list.txt 2> err.txt && [ ! -s err.txt ] || why="status or stderr"
-for kind in diffuse specular masking fresnel arch tier preset; do
+for kind in diffuse specular masking fresnel metal convention light arch tier rig preset; do
     grep -q "^$kind " list.txt || why="$why lacks $kind"
 done
 verdict "--list" "$why"
 
-# Every listed word is an option's value; what is not available is refused.
-while read -r kind word state _; do
-    name="--$kind $word"
+# form WORD TEXT: the word and its numbers, as the list has them in TEXT, with numbers in place of names.
+form() {
+    case $2 in
+    "$1:"*)
+        echo "${2%% *}" | sed 's/,$//; s/\[.*//; s/X,Y,Z/-1,2,2/; s/AXIS/1,-2,-2/; s/INNER,OUTER/20,30/; s/EXPONENT/5/
+                               s/\([:,/]\)[A-Z][A-Z0-9_]*/\10.5/g' ;;
+    *) echo "$1" ;;
+    esac
+}
+
+# Every listed word is an option's value, with the numbers that the list asks for; what is not available is refused.
+while read -r kind word state text; do
     case $kind:$state in
-    preset:*|*:available*) renders "$name" --$kind "$word" ;;
-    *) refused "$name is refused" 'allowed: ' --$kind "$word" ;;
+    preset:* | rig:*) renders "--$kind $word" --$kind "$word" ;;
+    metal:available*) renders "--fresnel conductor:$word" --fresnel "conductor:$word" ;;
+    masking:available:*)
+        under=${text##*; with }
+        renders "--masking $word" --specular "${under%%,*}:0.3" --masking "$word" ;;
+    convention:available:*)
+        specular=ggx:0.3
+        [ "$(form "$word" "$text")" = "$word" ] || specular=ggx
+        renders "--convention $word" --preset chalk --fresnel schlick:0.04 --convention "$(form "$word" "$text")" \
+            --specular $specular ;;
+    *:available*) renders "--$kind $(form "$word" "$text")" --$kind "$(form "$word" "$text")" ;;
+    metal:*) refused "--fresnel conductor:$word is refused" 'allowed: ' --fresnel "conductor:$word" ;;
+    *) refused "--$kind $word is refused" 'allowed: ' --$kind "$word" ;;
     esac
 done < list.txt
 
@@ -309,24 +346,41 @@ fi
 
 # ---- Rasterizing -----------------------------------------------------------------------------------------------------
 
-# A Lambertian sphere of radius 1 under one light: radiance = nl E / pi where the ray through the pixel meets it. Pixels
-# across its outline or the shadow's are left out.
-for samples in 1 4; do
-    small sphere --diffuse lambert --albedo 1 --specular none --ambient 0 --light 1:2:3,3 --distance 3 --fov 40 \
+# A Lambertian sphere of radius 1 under one light of 3 (at 1:2:3, of 30, where it is a point or a spot light): radiance
+# = nl E / pi where the ray through the pixel meets it. Pixels across its outline or the shadow's are left out.
+sphere_radiance() {
+    samples=$1 light=$2
+    small sphere --diffuse lambert --albedo 1 --specular none --ambient 0 --light "$light" --distance 3 --fov 40 \
         --samples $samples --background 0.5 -o picture.png --pfm picture.pfm
-    why=$(pfm_text picture.pfm | awk 'NR == 1 { width = $1; height = $2; pi = atan2(0, -1); next } {
+    why=$(pfm_text picture.pfm | awk -v kind="${light%%:*}" '
+      NR == 1 { width = $1; height = $2; pi = atan2(0, -1); next } {
         x = (NR - 2) % width + 0.5 - width / 2; y = height / 2 - int((NR - 2) / width) - 0.5
         z = -height / 2 / (sin(pi / 9) / cos(pi / 9))
         size = sqrt(x * x + y * y + z * z); x /= size; y /= size; z /= size
-        inside = 9 * z * z - 8; nl = -1
-        if (inside > 0) { t = -3 * z - sqrt(inside); nl = (x * t + 2 * y * t + 3 * (z * t + 3)) / sqrt(14) }
-        if (inside > -0.1 && inside < 0.1 || nl > -0.1 && nl < 0.1) next
-        want = inside < 0 ? 0.5 : nl > 0 ? nl * 3 / pi : 0
-        if (($1 - want) ^ 2 > 0.003 ^ 2) bad = bad " " NR ": " $1 " not " want
-        lit += nl > 0
+        inside = 9 * z * z - 8; nl = -1; E = 3
+        if (inside > 0) {
+            t = -3 * z - sqrt(inside); nx = x * t; ny = y * t; nz = z * t + 3
+            lx = 1; ly = 2; lz = 3
+            if (kind == "point" || kind == "spot") { lx -= nx; ly -= ny; lz -= nz }
+            far = sqrt(lx ^ 2 + ly ^ 2 + lz ^ 2); nl = (nx * lx + ny * ly + nz * lz) / far
+            if (kind == "point" || kind == "spot") E = 30 / far ^ 2
+            if (kind == "spot") {
+                c = (lx + 2 * ly + 3 * lz) / sqrt(14) / far
+                u = (c - cos(pi / 15)) / (cos(pi / 45) - cos(pi / 15)); u = u < 0 ? 0 : u > 1 ? 1 : u
+                E *= u * u * (3 - 2 * u)
+            }
+        }
+        if (inside > -0.1 && inside < 0.1 || nl > -0.15 && nl < 0.15) next
+        want = inside < 0 ? 0.5 : nl > 0 ? nl * E / pi : 0
+        if (($1 - want) ^ 2 > (0.003 + 0.01 * (kind == "spot")) ^ 2) bad = bad " " NR ": " $1 " not " want
+        lit += nl > 0 && E > 0
     } END { print bad (lit < 200 ? " only " lit " pixels lit" : "") }')
-    verdict "a sphere's radiance, $samples samples a pixel" "$(echo $why)"
-done
+    verdict "a sphere's radiance, $samples samples a pixel, --light $light" "$(echo $why)"
+}
+
+for samples in 1 4 16; do sphere_radiance $samples 1,2,3/3; done
+sphere_radiance 1 point:1,2,3/30
+sphere_radiance 1 spot:1,2,3/-1,-2,-3/4,12/30
 
 # covered FACES...: the samples that these faces of corners.obj cover; all corners count for the fit.
 covered() {
@@ -395,6 +449,69 @@ differ "a back is not lit as a front" front.png back.png
 small plain.obj --flat -o flat.png
 differ "--flat and smooth" plain.png flat.png
 
+# ---- Models and lights -----------------------------------------------------------------------------------------------
+
+# changes NAME ARGUMENTS... -- ARGUMENTS...: two pictures that differ.
+changes() {
+    name=$1 first=
+    shift
+    while [ "$1" != -- ]; do first="$first $1"; shift; done
+    shift
+    small $first -o one.png --pfm one.pfm
+    small "$@" -o other.png --pfm other.pfm
+    differ "$name" one.pfm other.pfm
+}
+
+changes "--fresnel" --preset gold -- --preset gold --fresnel schlick
+changes "--masking" --preset cook-torrance -- --preset cook-torrance --masking smith
+changes "--scale" --preset cook-torrance -- --preset cook-torrance --scale 1981
+changes "--polarisation" --preset enamel -- --preset enamel --polarisation -1
+changes "a medium around" --preset obsidian -- --preset obsidian --fresnel dielectric:1.49/1.33
+changes "along and across" --preset brushed -- --preset brushed --specular ggx-anisotropic:0.5,0.15
+changes "--convention" --preset chalk -- --preset chalk --specular ggx --fresnel schlick \
+    --convention metallic-roughness:0.85/0/0.5
+changes "--rig" --preset gold -- --preset gold --rig boxes
+changes "--sh" --preset chalk -- --preset chalk --sh 0.3/0.2/0/0
+changes "--metals under another distribution" --metals -- --metals --specular beckmann:0.2
+changes "--metals under Schlick's Fresnel" --metals -- --metals --fresnel schlick
+changes "--grazing under another light" --grazing -- --grazing --light 0,0,1
+
+# The picture's size stays what it was asked to be, wherever that stands.
+demo --size 30x20 --metals --time 0 -o one.png > out.txt && demo --metals --time 0 --size 30x20 -o other.png > out.txt
+same "--metals: an option before it and behind it" one.png other.png
+
+# Beside ambient light alone, a sample without a tangent would be black.
+for mesh in teapot sphere plain.obj "plain.obj --flat"; do
+    small $mesh --diffuse lambert --albedo 1 --specular ggx-anisotropic:0.1,0.4 --ambient 3 --samples 1 --background 1 \
+        -o picture.png --pfm picture.pfm
+    why=$(pfm_text picture.pfm | awk 'NR > 1 && $1 < 0.9 { print NR ": " $1 }' | head -n 3)
+    verdict "tangents everywhere: $mesh" "$(echo $why)"
+    small $mesh --preset gold --samples 1 -o one.png --pfm one.pfm
+    small $mesh --preset gold --samples 1 --specular ggx-anisotropic:0.35 -o other.png --pfm other.pfm
+    pfm_text one.pfm > one.txt
+    why=$(pfm_text other.pfm | paste - one.txt | awk '($1 - $4) ^ 2 > (1e-5 * $4) ^ 2 { print NR ": " $1 " not " $4 }' |
+        head -n 3)
+    verdict "one alpha along and across is isotropic: $mesh" "$(echo $why)"
+done
+
+# Of the middle of a ball, in rows and columns of the scene: light is nearly white, and a metal's F0 tints it.
+small --metals --size 96x66 -o picture.png --pfm picture.pfm
+tint() {
+    name=$1
+    why=$(pfm_text picture.pfm | awk -v x="$2" -v y="$3" -v least="$4" -v most="$5" '
+        NR == 1 { step = $2 / 2 * 0.4562 / (8 * 0.0874887); across = $1; down = $2; next } {
+            dx = (NR - 2) % across + 0.5 - across / 2 - x * step
+            dy = int((NR - 2) / across) + 0.5 - down / 2 + y * step
+            if (dx * dx + dy * dy < step * step / 16) { red += $1; blue += $3 }
+        } END { if (!(blue / red > least && blue / red < most)) print "blue is " blue / red " of red" }')
+    verdict "--metals: the tint of $name" "$why"
+}
+tint gold -1 0 0.3 0.55
+tint copper 1.5 0.866 0.45 0.7
+tint silver -0.5 -0.866 0.9 1.1
+grep -q '^  gold  *0.146  0.589  1.261 ' out.txt && why= || why="$(cat out.txt)"
+verdict "--metals: the report has every metal's index" "$why"
+
 # ---- Determinism -----------------------------------------------------------------------------------------------------
 
 archs=$(awk '$1 == "arch" && $2 != "best" && $3 ~ /^available/ { print $2 }' list.txt)
@@ -404,8 +521,9 @@ first=${archs%%
 if [ -z "$strict" ] || [ "$archs" = "$first" ]; then
     skip "strict: the same bytes on every arch" "one arch here, or no strict tier"
 else
-    for look in "--preset porcelain" "--preset felt --specular ggx --alpha 0.2 --f0 .04 --masking smith" \
-                "--preset gold" "--grid"; do
+    for look in "--preset porcelain" "--preset felt --specular ggx:0.2 --fresnel schlick:0.04 --masking smith" \
+                "--preset brushed --rig boxes" "--preset enamel" "--preset cook-torrance" "--metals" "--grazing" \
+                "--grid"; do
         for arch in $archs; do
             rm -f "$arch.png" "$arch.pfm"
             small $look --tier strict --arch "$arch" -o "$arch.png" --pfm "$arch.pfm"
