@@ -42,7 +42,6 @@ OP vf vf_bits_minus(vf a, vf b)
     return _mm256_castsi256_ps(_mm256_sub_epi32(_mm256_castps_si256(a), _mm256_castps_si256(b)));
 }
 OP vf vf_or(vf a, vf b) { return _mm256_or_ps(a, b); }
-OP vf vf_and(vf a, vf b) { return _mm256_and_ps(a, b); }
 OP vf vf_shift_left(vf a, int n) { return (vf)((vf_bits)a << n); }
 OP vf vf_shift_right(vf a, int n) { return (vf)((vf_bits)a >> n); }
 OP uint32_t vf_signs(vf a) { return (uint32_t)_mm256_movemask_ps(a); }

@@ -42,7 +42,6 @@ OP vf vf_bits_minus(vf a, vf b)
     return _mm512_castsi512_ps(_mm512_sub_epi32(_mm512_castps_si512(a), _mm512_castps_si512(b)));
 }
 OP vf vf_or(vf a, vf b) { return _mm512_or_ps(a, b); }
-OP vf vf_and(vf a, vf b) { return _mm512_and_ps(a, b); }
 OP vf vf_shift_left(vf a, int n) { return (vf)((vf_bits)a << n); }
 OP vf vf_shift_right(vf a, int n) { return (vf)((vf_bits)a >> n); }
 OP uint32_t vf_signs(vf a) { return _mm512_movepi32_mask(_mm512_castps_si512(a)); }

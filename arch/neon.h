@@ -49,10 +49,6 @@ OP vf vf_or(vf a, vf b)
 {
     return vreinterpretq_f32_u32(vorrq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
 }
-OP vf vf_and(vf a, vf b)
-{
-    return vreinterpretq_f32_u32(vandq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
-}
 OP vf vf_shift_left(vf a, int n) { return vreinterpretq_f32_u32(vreinterpretq_u32_f32(a) << n); }
 OP vf vf_shift_right(vf a, int n) { return vreinterpretq_f32_u32(vreinterpretq_u32_f32(a) >> n); }
 OP uint32_t vf_signs(vf a)

@@ -38,15 +38,14 @@ OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
 #endif
 
 /* On the bits: the one of a and b whose bits, as an unsigned number, are larger (negatives, infinities and NaN beat
- * all); the bits of a less those of b; the bits that either has; those that both have; the bits of a, moved by a
- * constant n of 0 to 31, zeros behind them. vf_signs: bit k is the sign of lane k. */
+ * all); the bits of a less those of b; the bits that either has; the bits of a, moved by a constant n of 0 to 31, zeros
+ * behind them. vf_signs: bit k is the sign of lane k. */
 typedef union { float f; uint32_t u; } float_bits;
 OP uint32_t bits_of(vf a) { return ((float_bits){ .f = a }).u; }
 OP vf from_bits(uint32_t u) { return ((float_bits){ .u = u }).f; }
 OP vf vf_bits_max(vf a, vf b) { return bits_of(a) > bits_of(b) ? a : b; }
 OP vf vf_bits_minus(vf a, vf b) { return from_bits(bits_of(a) - bits_of(b)); }
 OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
-OP vf vf_and(vf a, vf b) { return from_bits(bits_of(a) & bits_of(b)); }
 OP vf vf_shift_left(vf a, int n) { return from_bits(bits_of(a) << n); }
 OP vf vf_shift_right(vf a, int n) { return from_bits(bits_of(a) >> n); }
 OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }

@@ -40,7 +40,6 @@ OP vf vf_bits_max(vf a, vf b)
 }
 OP vf vf_bits_minus(vf a, vf b) { return _mm_castsi128_ps(_mm_sub_epi32(_mm_castps_si128(a), _mm_castps_si128(b))); }
 OP vf vf_or(vf a, vf b) { return _mm_or_ps(a, b); }
-OP vf vf_and(vf a, vf b) { return _mm_and_ps(a, b); }
 OP vf vf_shift_left(vf a, int n) { return (vf)((vf_bits)a << n); }
 OP vf vf_shift_right(vf a, int n) { return (vf)((vf_bits)a >> n); }
 OP uint32_t vf_signs(vf a) { return (uint32_t)_mm_movemask_ps(a); }

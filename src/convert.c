@@ -128,8 +128,8 @@ static float metallic_of_colour(const facet_specular_glossiness *to, float diffu
         const float d = to->diffuse[c] - diffuse, s = to->specular[c] - specular;
         dd += d * d, ss += s * s, ds += d * s;
     }
-    const float along = ss - dd, across = 2.0f * ds, root = vf_sqrt(square(along) + square(across));
-    const float x = along > 0.0f ? across : root - along, y = along > 0.0f ? root + along : across;
+    const float along = ss - dd, sideways = 2.0f * ds, root = vf_sqrt(square(along) + square(sideways));
+    const float x = along > 0.0f ? sideways : root - along, y = along > 0.0f ? root + along : sideways;
     return clamp01(y / (x + y));
 }
 

@@ -205,7 +205,7 @@ enum {
  *                        facet_f0_from_eta.
  *   fresnel.f90          Schlick's reflectance at grazing, clamped to [0, 1]; 0: 1.
  *   fresnel.f82          SCHLICK_F82's reflectance where vh = 1/7 (82 degrees), clamped to [0, 1]. Where all three are
- *                        0, the conductor's of eta and k, which must then be given.
+ *                        0, the conductor's of eta and k, which must then be given as numbers.
  *   fresnel.eta, .k      index of refraction, > 0 in every channel once one is given, and extinction, >= 0, clamped to
  *                        [FACET_ETA_FLOOR, FACET_ETA_CAP] and [0, FACET_ETA_CAP]. DIELECTRIC takes eta_outside times
  *                        facet_eta_from_f0(f0) where no eta is given; CONDUCTOR needs eta.
@@ -306,7 +306,8 @@ enum {
  *   view           needed but by diffuse none and Lambert without specular: where it is NULL nothing faces away.
  *   tangent        unit and perpendicular to the normal; needed by anisotropic distributions, else ignored.
  *   position       needed by point and spot lights, else ignored.
- *   occlusion      multiplies ambient and sh, clamped to [0, 1]; NULL: 1.
+ *   occlusion      multiplies ambient and sh, clamped to [0, 1]; NULL: 1. Read only where they are given and there is
+ *                  something diffuse to reflect them.
  *   albedo and those after it: needed where the plan's material promises them, else ignored.
  *   uniform        FACET_STREAM_*: those of the streams above that hold one value for the whole batch.
  *   lights         added in array order, starting from zero; then ambient, emission, and with FACET_ACCUMULATE the
@@ -341,13 +342,20 @@ typedef struct facet_batch {
  * Refuses malformed arguments alone, before anything is written, by status (NULL, VALUE, ENUM, PLAN, SIZE) and field in
  * `*error` (may be NULL); data never fails. A sample's bytes depend on nothing
  * but its own values: not on its place, the count, the alignment or its neighbours. Results for special samples, where
- * the first row that applies holds:
+ * the first row that applies holds, and what a parameter follows from counts as read:
  *   NaN or infinity in a value that is read, n = 0, or a
  *   tangent that is read and 0                             0, and counted in `invalid`
  *   nl <= 0 or nv <= 0                                     that light adds exactly 0
  *   v + l = 0                                              specular 0
  *   a point or spot light at distance 0, or whose squared
- *   distance is no normal float                            that light adds exactly 0
+ *   distance is no normal float; at its range or beyond;
+ *   outside its outer cone                                 that light adds exactly 0
+ *   r.v <= 0 under Phong, exp(-x) below 2^-126, a full
+ *   Oren-Nayar sum below 0                                 that part adds exactly 0
+ *   eta = eta_outside and k = 0                            the exact Fresnel terms are exactly 0
+ *   beyond the critical angle                              they are exactly 1
+ *   k = 0 in a conductor                                   the dielectric's, within rounding
+ *   a tangent that is not perpendicular to n               finite and >= 0, without a promise of accuracy
  *   a result that would overflow                           FLT_MAX
  *   vectors far from unit length                           finite and >= 0, without a promise of accuracy
  * Results for nl or nv below 2^-22 are finite; error bounds hold above. */

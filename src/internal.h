@@ -109,8 +109,8 @@ typedef struct __attribute__((may_alias)) plan_fields {
 /* One call of a kernel. */
 typedef struct job {
     const plan_fields *plan;
-    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else zeros. The kernel moves
-                                                  them along. */
+    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else zeros; the kernel
+                                                  moves them along */
     uint8_t moving[COMPONENT_COUNT];     /* the components of streams that are not uniform */
     int moving_count;
     uint32_t streams;                    /* FACET_STREAM_*: are read: from the batch or, if uniform, from the plan */

@@ -40,6 +40,9 @@ OP vf3 clamp3(vf3 a, float low, float high)
     return (vf3){ clamp(a.x, low, high), clamp(a.y, low, high), clamp(a.z, low, high) };
 }
 
+/* The same, but a NaN stays one. */
+OP vf within(vf a, float low, float high) { return vf_min(splat(high), vf_max(splat(low), a)); }
+
 /* What follows from sigma alone; a model gives each its meaning. */
 typedef struct { vf A, B, C, D; } terms;
 
@@ -104,9 +107,9 @@ OP terms terms_oren_nayar_57(vf sigma) { return oren_nayar_terms(sigma, 0.57f); 
 /* Oren and Nayar 1994, eq. 30: L1 = albedo/pi (C1 + cos(phi) C2 tan b + (1 - |cos(phi)|) C3 tan((a + b)/2)),
  *     C1 = A, C2 = B (sin a - (cos(phi) < 0 ? (2b/pi)^3 : 0)), C3 = 0.125/0.45 B (4ab/pi^2)^2;
  * eq. 31: L2 = 0.17 albedo^2/pi s2/(s2 + 0.13) (1 - cos(phi) (2b/pi)^2).
- * tan b = sin b/cos b and tan((a + b)/2) = (sin a + sin b)/(nl + nv) are multiplied by nl before they can overflow.
- * Where b = 0 there is no azimuth, and nothing left for it to multiply. The sum is negative at grazing, with opposite
- * azimuths: 0. */
+ * cos(phi) sin a tan b = s0/cos b as above; tan b = sin b/cos b and tan((a + b)/2) = (sin a + sin b)/(nl + nv) are
+ * multiplied by nl before they can overflow. Where b = 0 there is no azimuth, and nothing left for it to multiply. The
+ * sum is negative at grazing, with opposite azimuths: 0. */
 OP vf3 oren_nayar_1994(surface s, incidence i, bool interreflection)
 {
     vf cos_a = vf_min(i.nl, i.nv), cos_b = vf_max(i.nl, i.nv);
@@ -115,8 +118,8 @@ OP vf3 oren_nayar_1994(surface s, incidence i, bool interreflection)
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
     vf cos_phi = clamp(s0 / vf_max(splat(TINY), sin_a * sin_b), -1.0f, 1.0f);
 
-    vf facing = vf_select(vf_lt(s0, splat(0.0f)), vf_nmad(b, b2, sin_a), sin_a);
-    vf C2 = cos_phi * sin_b * facing * (i.nl / cos_b);
+    vf opposed = vf_min(cos_phi, splat(0.0f)) * (b * b2) * sin_b;
+    vf C2 = (s0 - opposed) * (i.nl / cos_b);
     vf C3 = (0.125f / 0.45f) * square(a * b) * (1.0f - vf_abs(cos_phi)) * (i.nl * (sin_a + sin_b) / (i.nl + i.nv));
     vf L1 = vf_mad(s.terms.B, C2 + C3, s.terms.A * i.nl);
     vf L2 = s.terms.C * i.nl * vf_nmad(cos_phi, b2, splat(1.0f));
@@ -311,10 +314,10 @@ OP vf smith_exact(vf mu, vf y2)
 }
 
 #define SMITH(name, how, shadow, spread)                                                                              \
-    OP vf visibility_##name(surface s, incidence i)                                                                  \
-    {                                                                                                                \
-        slopes y2 = spread(s, i);                                                                                    \
-        return how(i, shadow(i.nl, y2.l), shadow(i.nv, y2.v));                                                       \
+    OP vf visibility_##name(surface s, incidence i)                                                                   \
+    {                                                                                                                 \
+        slopes y2 = spread(s, i);                                                                                     \
+        return how(i, shadow(i.nl, y2.l), shadow(i.nv, y2.v));                                                        \
     }
 SMITH(smith_ggx_anisotropic, separable, ggx, anisotropic)
 SMITH(smith_correlated_ggx_anisotropic, correlated, ggx, anisotropic)
@@ -458,17 +461,18 @@ OP vf3 fresnel_conductor(surface s, incidence i)
                   conductor(s.eta.z, s.k.z, s.eta_outside, c, s.parallel) };
 }
 
-/* ---- What one parameter says of another -------------------------------------------------------------------------- */
+/* ---- What one parameter says of another: a NaN, that it is not known -------------------------------------------- */
 
 /* Metallic-roughness: albedo = base (1 - metallic), f0 = lerp(0.08 specular_level, base, metallic). */
 OP vf3 albedo_of_base(vf3 base, vf metallic) { return scale3(base, 1.0f - metallic); }
 OP vf3 f0_of_base(vf3 base, vf metallic, vf specular_level)
 {
-    vf dielectric_part = 0.08f * specular_level * (1.0f - metallic);
-    return clamp3(mad3(base, same3(metallic), same3(dielectric_part)), 0.0f, 1.0f);
+    vf part = 0.08f * specular_level * (1.0f - metallic);
+    vf3 f0 = mad3(base, same3(metallic), same3(part));
+    return (vf3){ within(f0.x, 0.0f, 1.0f), within(f0.y, 0.0f, 1.0f), within(f0.z, 0.0f, 1.0f) };
 }
 
-OP vf alpha_of_roughness(vf roughness) { return vf_max(square(roughness), splat(FACET_ALPHA_FLOOR)); }
+OP vf alpha_of_roughness(vf roughness) { return within(square(roughness), FACET_ALPHA_FLOOR, 1.0f); }
 
 /* Born and Wolf, ch. 14: ((eta - o)^2 + k^2)/((eta + o)^2 + k^2). */
 OP vf f0_of_index(vf eta, vf k, vf o)
@@ -479,6 +483,9 @@ OP vf f0_of_index(vf eta, vf k, vf o)
 
 /* Cook and Torrance 1981: eta = (1 + sqrt f0)/(1 - sqrt f0), here (1 + sqrt f0)^2/(1 - f0), where nothing cancels; at
  * most FACET_ETA_CAP. */
-OP vf eta_of_f0(vf f0) { return vf_min(square(1.0f + vf_sqrt(f0)) / (1.0f - f0), splat(FACET_ETA_CAP)); }
+OP vf eta_of_f0(vf f0) { return within(square(1.0f + vf_sqrt(f0)) / (1.0f - f0), 1.0f, FACET_ETA_CAP); }
+
+/* In a medium of index o. */
+OP vf eta_in(vf f0, vf o) { return within(o * eta_of_f0(f0), FACET_ETA_FLOOR, FACET_ETA_CAP); }
 
 #endif

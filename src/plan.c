@@ -126,7 +126,8 @@ static facet_status check_index(const facet_material *m, facet_error *error)
     if (m->specular.model == FACET_DISTRIBUTION_NONE) return FACET_OK;
     if (reads & FACET_STREAM_ETA && !numbers && !streams && (reads & FACET_STREAM_K || !f0))
         return refuse(error, FACET_ERROR_VALUE, "fresnel.eta", -1);
-    if (fresnel_rows[m->fresnel.model].properties & F82 && !any(m->fresnel.f82) && !numbers)
+    if (fresnel_rows[m->fresnel.model].properties & F82 && !any(m->fresnel.f82)
+        && (!numbers || m->streams & (FACET_STREAM_ETA | FACET_STREAM_K)))
         return refuse(error, FACET_ERROR_VALUE, "fresnel.f82", -1);
     return FACET_OK;
 }
@@ -251,8 +252,7 @@ static void derive_parameters(plan_fields *p, const facet_material *m)
     if (p->number_from & F0_FROM_ETA && derive(p, wanted, FACET_STREAM_F0, FACET_STREAM_ETA | FACET_STREAM_K))
         for (int c = 0; c < 3; c++) p->f0[c] = f0_of_index(p->eta[c], p->k[c], p->eta_outside);
     if (p->number_from & ETA_FROM_F0 && derive(p, wanted, FACET_STREAM_ETA, FACET_STREAM_F0))
-        for (int c = 0; c < 3; c++)
-            p->eta[c] = clamp(p->eta_outside * eta_of_f0(p->f0[c]), FACET_ETA_FLOOR, FACET_ETA_CAP);
+        for (int c = 0; c < 3; c++) p->eta[c] = eta_in(p->f0[c], p->eta_outside);
 }
 
 static terms terms_of(facet_diffuse model, float sigma)

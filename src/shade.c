@@ -157,9 +157,9 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
     j->moving_count = 0;
     for (int c = 0; c < COMPONENT_COUNT; c++) j->component[c] = zeros;
 #define FACET_STREAM(id, field, components, owner, ...)                                                               \
-    if (taken & FACET_STREAM_##id                                                                                    \
-        && !take_stream(j, FACET_STREAM_##id, COMPONENT_##id, components, GIVEN_##components(field),                 \
-                        NUMBER_##owner(components, field)))                                                          \
+    if (taken & FACET_STREAM_##id                                                                                     \
+        && !take_stream(j, FACET_STREAM_##id, COMPONENT_##id, components, GIVEN_##components(field),                  \
+                        NUMBER_##owner(components, field)))                                                           \
         return refuse(error, FACET_ERROR_NULL, #field, -1);
 #include "streams.def"
     j->uniform &= j->streams;

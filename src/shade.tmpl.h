@@ -59,7 +59,7 @@ OP vf odd_values(const group *g, features x, const plan_fields *p, int k)
 #define OUTSIDE_1(id, low, high) outside_1(LOAD(g, id, k), low, high, &unit)
 #define OUTSIDE_3(id, low, high) outside_3(LOAD3(g, id, k), low, high, x.plain, &unit)
 #define OUTSIDE(which, id, components, low, high)                                                                     \
-    if ((which) & FACET_STREAM_##id && x.streams & FACET_STREAM_##id)                                              \
+    if ((which) & FACET_STREAM_##id && x.streams & FACET_STREAM_##id)                                                 \
         odd = vf_or(odd, OUTSIDE_##components(id, low, high));
 #define FACET_STREAM(id, field, components, owner, low, high, title) OUTSIDE(COMMON_STREAMS, id, components, low, high)
 #include "streams.def"
@@ -138,16 +138,16 @@ static __attribute__((noinline)) size_t shade_common(const job *j, const block *
 /* The rows of special.def: the same body with constants, for plain batches of one-sided samples. */
 #define FACET_SPECIAL(diffuse_, distribution_, masking, fresnel_, coupled_)                                           \
     static __attribute__((noinline)) size_t shade_##diffuse_##_##distribution_##_##masking##_##fresnel_##_##coupled_( \
-        const job *j, const block *b, size_t at, uint64_t *invalid)                                                  \
-    {                                                                                                                \
-        const features x = { .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                           \
-                             .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                       \
-                             .visibility = VISIBILITY_##masking##_##distribution_,                                   \
-                             .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                           \
-                             .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_ |         \
-                                        DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,               \
-                             .coupled = coupled_, .plain = true };                                                   \
-        return shade_block(j, x, b, at, invalid);                                                                    \
+        const job *j, const block *b, size_t at, uint64_t *invalid)                                                   \
+    {                                                                                                                 \
+        const features x = { .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                            \
+                             .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                        \
+                             .visibility = VISIBILITY_##masking##_##distribution_,                                    \
+                             .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                            \
+                             .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_ |          \
+                                        DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,                \
+                             .coupled = coupled_, .plain = true };                                                    \
+        return shade_block(j, x, b, at, invalid);                                                                     \
     }
 #include "special.def"
 
@@ -282,15 +282,15 @@ OP vf source(const block *b, int component, size_t at, float low, float high)
 
 #define SOURCE_1(id, low, high) source(b, COMPONENT_##id, at, low, high)
 #define SOURCE_3(id, low, high)                                                                                       \
-    (vf3){ source(b, COMPONENT_##id, at, low, high), source(b, COMPONENT_##id + 1, at, low, high),                   \
+    (vf3){ source(b, COMPONENT_##id, at, low, high), source(b, COMPONENT_##id + 1, at, low, high),                    \
            source(b, COMPONENT_##id + 2, at, low, high) }
 #define VALUE_1 vf
 #define VALUE_3 vf3
 #define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
     OP VALUE_##components source_##id(const plan_fields *p, const block *b, size_t at)                                \
-    {                                                                                                                \
-        (void)p;                                                                                                     \
-        return SOURCE_##components(id, low, high);                                                                   \
+    {                                                                                                                 \
+        (void)p;                                                                                                      \
+        return SOURCE_##components(id, low, high);                                                                    \
     }
 #include "streams.def"
 
@@ -327,8 +327,9 @@ OP vf3 derived_f0(const plan_fields *p, const block *b, size_t at)
 
 OP vf3 derived_eta(const plan_fields *p, const block *b, size_t at)
 {
-    vf3 f0 = source_F0(p, b, at), eta = { eta_of_f0(f0.x), eta_of_f0(f0.y), eta_of_f0(f0.z) };
-    return clamp3(scale3(eta, splat(p->eta_outside)), FACET_ETA_FLOOR, FACET_ETA_CAP);
+    vf3 f0 = source_F0(p, b, at);
+    vf o = splat(p->eta_outside);
+    return (vf3){ eta_in(f0.x, o), eta_in(f0.y, o), eta_in(f0.z, o) };
 }
 
 /* Parameters that follow from other streams, a block of them. Out of the way of materials that have none. */

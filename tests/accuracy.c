@@ -28,11 +28,14 @@ static void expect_within(int goal, const witness *w)
 {
     const sample *s = &w->s;
     expect(w->reached <= 1,
-           "%s: %.3g of the bound on %s: got %a, want %a: n %a %a %a v %a %a %a l %a %a %a albedo %a sigma %a alpha %a "
-           "f0 %a irradiance %a", goal_words[goal], w->reached, arch_word(w->arch), (double)w->got, w->want,
-           (double)s->n[0], (double)s->n[1], (double)s->n[2], (double)s->v[0], (double)s->v[1], (double)s->v[2],
-           (double)s->l[0], (double)s->l[1], (double)s->l[2], (double)s->albedo[0], (double)s->sigma, (double)s->alpha,
-           (double)s->f0[0], (double)s->irradiance[0]);
+           "%s: %.3g of the bound on %s: got %a, want %a: n %a %a %a v %a %a %a l %a %a %a tangent %a %a %a position "
+           "%a %a %a albedo %a sigma %a alpha %a %a exponent %a f0 %a eta %a k %a irradiance %a", goal_words[goal],
+           w->reached, arch_word(w->arch), (double)w->got, w->want, (double)s->n[0], (double)s->n[1], (double)s->n[2],
+           (double)s->v[0], (double)s->v[1], (double)s->v[2], (double)s->l[0], (double)s->l[1], (double)s->l[2],
+           (double)s->tangent[0], (double)s->tangent[1], (double)s->tangent[2], (double)s->position[0],
+           (double)s->position[1], (double)s->position[2], (double)s->albedo[0], (double)s->sigma, (double)s->alpha,
+           (double)s->alpha_y, (double)s->exponent, (double)s->f0[0], (double)s->eta[0], (double)s->k[0],
+           (double)s->irradiance[0]);
 }
 
 static bool expect_small(const accuracy_row *row)
@@ -86,13 +89,13 @@ static double measure_p999(const kernel_case *kernel, facet_tier tier)
     enum { COUNT = 200 * MOST_MEASURED };
     static double errors[COUNT];
     const int count = test_slow_machine ? COUNT / 4 : COUNT;
-    const kernel_set set = kernels_of(kernel, tier, 0, tier == FACET_TIER_STRICT);
+    const kernel_set set = kernels_of(kernel, tier, tier == FACET_TIER_STRICT);
     test_random random = { 2 };
     for (int at = 0; at < count; at += MOST_MEASURED) {
         sample samples[MOST_MEASURED];
         measurement results[MOST_MEASURED];
         for (int i = 0; i < MOST_MEASURED; i++)
-            samples[i] = random_sample(&random, i & 1 ? SAMPLES_LOBE : SAMPLES_UNIFORM, 0.01f, kernel->sigma_max);
+            samples[i] = random_sample_of(kernel, &random, i & 1 ? SAMPLES_LOBE : SAMPLES_UNIFORM, 0.01f);
         measure(&set, samples, MOST_MEASURED, results);
         for (int i = 0; i < MOST_MEASURED; i++) errors[at + i] = results[i].error;
     }
@@ -106,7 +109,7 @@ static void check_exceeding(const kernel_case *kernel, const accuracy_row *row, 
 {
     test("%s, %s", kernel->name, tier_word(row->tier));
     expect_small(row);
-    const kernel_set set = kernels_of(kernel, row->tier, 0, false);
+    const kernel_set set = kernels_of(kernel, row->tier, false);
     for (int goal = 0; goal < GOALS; goal++)
         if (row->worst[goal].reached > 0) replay(&set, row, goal);
     search_worst(kernel, row->tier, &row->bound, effort(), found);
@@ -142,18 +145,45 @@ static void check_p999(const kernel_case *kernel, const accuracy_row *row)
     else skip("%.3g here, in the table %.3g", p999, limit);
 }
 
-/* The bound holds whatever Schlick's f90 is. */
-static void check_f90(const kernel_case *kernel, const accuracy_row *row)
+/* ---- Numbers of the material's that no stream brings ------------------------------------------------------------- */
+
+enum { VARIANTS = 6 };
+
+/* Fills what the Fresnel term takes of them. False where it takes none. */
+static bool vary(facet_material *m, int variant)
 {
-    static const float f90s[] = { 1e-6f, 0.02f, 0.5f };
-    test("%s, %s, f90 below 1", kernel->name, tier_word(row->tier));
+    static const float f90s[VARIANTS] = { 1e-6f, 0.02f, 0.5f, 0.9f, 0.1f, 0.999999f };
+    static const float f82s[VARIANTS][3] = { { 1e-6f, 0, 0 }, { 1, 1, 1 }, { 0.02f, 0.2f, 0.5f }, { 0.7f, 0.8f, 0.9f },
+                                             { 0.95f, 0.99f, 0.4f }, { 0.3f, 0.6f, 0.1f } };
+    static const float media[VARIANTS] = { 0, 1.33f, 1.5f, 0.7f, 2.4f, 1.0001f };
+    static const float polarisations[VARIANTS] = { 1, -1, 0, 1, -0.3f, 0.9f };
+    switch (m->fresnel.model) {
+    case FACET_FRESNEL_SCHLICK: m->fresnel.f90 = f90s[variant]; return true;
+    case FACET_FRESNEL_SCHLICK_F82: memcpy(m->fresnel.f82, f82s[variant], sizeof m->fresnel.f82); return true;
+    case FACET_FRESNEL_DIELECTRIC:
+    case FACET_FRESNEL_CONDUCTOR:
+        m->fresnel.eta_outside = media[variant];
+        m->fresnel.polarisation = polarisations[variant];
+        return true;
+    default: return false;
+    }
+}
+
+/* The bound holds whatever they are; of exact Fresnel terms that of the case that has them not zero. */
+static void check_variants(const kernel_case *kernel, const accuracy_row *row)
+{
+    kernel_case varied = *kernel;
+    if (kernel->material.specular.model == FACET_DISTRIBUTION_NONE || !vary(&varied.material, 0)) return;
+    if (kernel->streams & FACET_STREAM_ETA && kernel->material.fresnel.eta_outside == 0) return;
+    test("%s, %s, other numbers of Fresnel's", kernel->name, tier_word(row->tier));
     test_random random = { 3 };
     for (int k = 0; k < (test_slow_machine ? 3 : 60); k++) {
         sample samples[MOST_MEASURED];
         measurement results[MOST_MEASURED];
-        const kernel_set set = kernels_of(kernel, row->tier, f90s[k % 3], false);
+        vary(&varied.material, k % VARIANTS);
+        const kernel_set set = kernels_of(&varied, row->tier, false);
         for (int i = 0; i < MOST_MEASURED; i++)
-            samples[i] = random_sample(&random, i % SAMPLES_KINDS, FACET_ALPHA_FLOOR, kernel->sigma_max);
+            samples[i] = random_sample_of(kernel, &random, i % SAMPLES_KINDS, FACET_ALPHA_FLOOR);
         measure(&set, samples, MOST_MEASURED, results);
         for (int i = 0; i < MOST_MEASURED; i++) {
             const cosines c = reference_cosines(&samples[i]);
@@ -161,10 +191,14 @@ static void check_f90(const kernel_case *kernel, const accuracy_row *row)
             int goal;
             const double bound = bound_at(&row->bound, &samples[i], c, &goal);
             const measurement *m = &results[i];
-            expect_within(goal, &(witness){ samples[i], m->arch, m->got, m->want, m->error / bound });
+            witness w = { samples[i], m->arch, m->got, m->want, m->error / bound };
+            make_grey(&w.s, m->channel);
+            expect_within(goal, &w);
         }
     }
 }
+
+/* ---- All tests of a kernel --------------------------------------------------------------------------------------- */
 
 static void check_kernel(const kernel_case *kernel, facet_tier tier)
 {
@@ -178,7 +212,7 @@ static void check_kernel(const kernel_case *kernel, facet_tier tier)
     check_exceeding(kernel, row, found);
     check_tight(kernel, row, found);
     check_p999(kernel, row);
-    if (kernel->streams & FACET_STREAM_F0) check_f90(kernel, row);
+    check_variants(kernel, row);
 }
 
 /* ---- The table --------------------------------------------------------------------------------------------------- */
@@ -217,25 +251,39 @@ static double round_up(double x)
     return ceil(x / unit) * unit;
 }
 
+/* Leaves out what is nowhere the largest term. True where there was one. */
+static bool drop_terms(accuracy_row *row)
+{
+    bool dropped = false;
+    for (int goal = GOAL_REL; goal <= GOAL_PEAK; goal++) {
+        if (row->bound.limit[goal] == 0 || row->worst[goal].reached > 0) continue;
+        row->bound.limit[goal] = 0;
+        dropped = true;
+    }
+    return dropped;
+}
+
 /* The terms in such proportions that the worst of each comes equally near to the bound: each is scaled by what its own
  * samples reach. Then, after a thorough search, all alike: so that the worst of all is the margin below the bound. */
 static void fit(const kernel_case *kernel, accuracy_row *row)
 {
     const search_effort rough = { 1, 60, 120, 1 }, thorough = { 6, 300, 1000, 1 };
     error_bound *b = &row->bound;
-    *b = (error_bound){ .limit = { 8, 1, kernel->streams & FACET_STREAM_ALPHA ? 2 : 0, 1 } };
+    *b = (error_bound){ .limit = { 8, 1, kernel->material.specular.model ? 2 : 0, 1 },
+                        .distribution = kernel->material.specular.model };
     for (int round = 0; round < 6; round++) {
         search_worst(kernel, row->tier, b, rough, row->worst);
         for (int goal = 0; goal < GOALS; goal++) b->limit[goal] *= row->worst[goal].reached;
     }
-    search_worst(kernel, row->tier, b, thorough, row->worst);
+    do search_worst(kernel, row->tier, b, thorough, row->worst);
+    while (drop_terms(row));
     double worst_term = 0;
     for (int goal = GOAL_REL; goal <= GOAL_PEAK; goal++) worst_term = fmax(worst_term, row->worst[goal].reached);
     for (int goal = 0; goal < GOALS; goal++) {
         const double reached = goal == GOAL_PLAIN ? row->worst[goal].reached : worst_term;
         b->limit[goal] = round_up(margin * b->limit[goal] * reached);
     }
-    const kernel_set set = kernels_of(kernel, row->tier, 0, false);
+    const kernel_set set = kernels_of(kernel, row->tier, false);
     for (int goal = 0; goal < GOALS; goal++)
         if (row->worst[goal].reached > 0) row->worst[goal] = measure_witness(&set, b, &row->worst[goal].s, goal);
 }

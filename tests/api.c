@@ -1,4 +1,4 @@
-/* The public functions beside their arithmetic: words, plans as bytes, sizes, descriptions, threads, passes of
+/* The public functions beside shading itself: words, plans as bytes, sizes, descriptions, threads, passes of
  * lights. */
 #include "cases.h"
 #include "guarded.h"
@@ -14,7 +14,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ALL_STREAMS = FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALPHA | FACET_STREAM_F0 };
+/* What a material may promise. */
+enum {
+#define OF_GEOMETRY(id)
+#define OF_MATERIAL(id) | FACET_STREAM_##id
+#define OF_SOURCE(id)   | FACET_STREAM_##id
+#define FACET_STREAM(id, field, components, owner, ...) OF_##owner(id)
+    ALL_STREAMS = 0
+#include "streams.def"
+};
+
+_Static_assert(sizeof(facet_plan) == 512, "what callers keep in flash and in files");
 
 static const facet_target strict_scalar = { FACET_ARCH_SCALAR, FACET_TIER_STRICT };
 
@@ -23,10 +33,13 @@ static const facet_target strict_scalar = { FACET_ARCH_SCALAR, FACET_TIER_STRICT
 static void test_words(void)
 {
     static const struct { facet_kind kind; int last; const char *word; } lasts[] = {
-        { FACET_KIND_DIFFUSE, FACET_DIFFUSE_FUJII, "fujii" },
-        { FACET_KIND_DISTRIBUTION, FACET_DISTRIBUTION_GGX, "ggx" },
-        { FACET_KIND_MASKING, FACET_MASKING_SMITH, "smith" },
-        { FACET_KIND_FRESNEL, FACET_FRESNEL_ONE, "one" },
+        { FACET_KIND_DIFFUSE, FACET_DIFFUSE_EON, "eon" },
+        { FACET_KIND_DISTRIBUTION, FACET_DISTRIBUTION_BLINN_PHONG_NORMALISED, "blinn-phong-normalised" },
+        { FACET_KIND_MASKING, FACET_MASKING_HAMMON, "hammon" },
+        { FACET_KIND_FRESNEL, FACET_FRESNEL_CONDUCTOR, "conductor" },
+        { FACET_KIND_CONVENTION, FACET_CONVENTION_SPECULAR_GLOSSINESS, "specular-glossiness" },
+        { FACET_KIND_LIGHT, FACET_LIGHT_SPOT, "spot" },
+        { FACET_KIND_METAL, FACET_METAL_TUNGSTEN, "tungsten" },
         { FACET_KIND_ARCH, FACET_ARCH_NEON, "neon" },
         { FACET_KIND_TIER, FACET_TIER_STRICT, "strict" },
         { FACET_KIND_STATUS, FACET_ERROR_SIZE, "a struct of a newer header uses what this library does not know" },
@@ -77,11 +90,26 @@ static facet_material rich_material(void)
 {
     return (facet_material){
         .diffuse = { FACET_DIFFUSE_OREN_NAYAR, { 0.8f, 0.5f, 0.25f }, 0.5f },
-        .specular = { FACET_DISTRIBUTION_GGX, FACET_MASKING_SMITH_CORRELATED, 0.25f },
-        .fresnel = { FACET_FRESNEL_SCHLICK, { 0.04f, 0.05f, 0.06f }, 0.9f, { 1.5f, 1.6f, 1.7f }, { 0.5f }, 1.25f },
+        .specular = { FACET_DISTRIBUTION_GGX, FACET_MASKING_SMITH_CORRELATED, 0.25f, 0.5f, 30.5f, 0.75f },
+        .fresnel = { FACET_FRESNEL_SCHLICK, { 0.04f, 0.05f, 0.06f }, 0.9f, { 0.7f, 0.8f, 0.9f }, { 1.5f, 1.6f, 1.7f },
+                     { 0.5f, 0, 0 }, 1.25f, -0.3f },
+        .convention = { FACET_CONVENTION_DIRECT, { 0.9f, 0.6f, 0.3f }, 0.4f, 0.6f, 0.7f, 0.55f },
         .coupled = true,
         .emission = { 0.1f, 0.2f, 0.3f },
     };
+}
+
+/* The same numbers with a kernel's models. */
+static facet_material rich_material_of(const kernel_case *k)
+{
+    facet_material m = rich_material();
+    m.diffuse.model = k->material.diffuse.model;
+    m.diffuse.sigma = k->sigma_max / 2;
+    m.specular.model = k->material.specular.model;
+    m.specular.masking = k->material.specular.masking;
+    m.fresnel.model = k->material.fresnel.model;
+    m.coupled = k->material.coupled;
+    return m;
 }
 
 static facet_plan make_plan(const facet_material *m, facet_target target)
@@ -98,7 +126,14 @@ static sample_batch random_batch(int count, uint64_t seed)
     if (!samples) abort();
     for (int i = 0; i < count; i++) samples[i] = random_sample(&r, i % SAMPLES_KINDS, 0.01f, 1.5f);
     sample_batch b = batch_of(samples, count);
-    for (int c = 0; c < 3; c++) memset(b.batch.radiance[c], 0, (size_t)count * sizeof(float));
+    for (int c = 0; c < 3; c++) {
+        memset(b.batch.radiance[c], 0, (size_t)count * sizeof(float));
+        b.batch.base[c] = b.batch.albedo[c];
+    }
+    b.batch.metallic = b.batch.f0[0];
+    b.batch.roughness = b.batch.glossiness = b.batch.alpha;
+    b.batch.specular_level = b.batch.f0[1];
+    b.batch.occlusion = b.batch.f0[2];
     free(samples);
     return b;
 }
@@ -118,11 +153,7 @@ static void test_plan_bytes(void)
     sample_batch a = random_batch(100, 1), b = random_batch(100, 1);
     for (int i = 0; i < case_count(); i++) {
         facet_plan plans[2], moved[3];
-        facet_material m = rich_material();
-        m.diffuse.model = case_at(i)->material.diffuse.model;
-        m.diffuse.sigma = case_at(i)->sigma_max / 2;
-        m.specular = case_at(i)->material.specular;
-        m.fresnel.model = case_at(i)->material.fresnel.model;
+        facet_material m = rich_material_of(case_at(i));
         memset(&plans[0], 0x5a, sizeof plans[0]);
         memset(&plans[1], 0xa5, sizeof plans[1]);
         for (int k = 0; k < 2; k++) expect(facet_plan_init(&plans[k], &m, strict_scalar, NULL) == FACET_OK, "refused");
@@ -203,34 +234,41 @@ static size_t describe_error(const void *e, char *text, size_t size) { return fa
 /* As snprintf: the whole length whatever the size, nothing written beyond it, a final 0 unless there is no room. */
 static void check_describe(describer *describe, const void *what, const char *begins)
 {
-    char whole[1024], part[1024];
+    char whole[1024], part[1024], untouched[1024];
     const size_t length = describe(what, whole, sizeof whole);
     if (!expect(length > 0 && length < sizeof whole && strlen(whole) == length, "%zu bytes", length)) return;
     expect(!strncmp(whole, begins, strlen(begins)), "begins with '%.40s'", whole);
     expect(describe(what, NULL, 0) == length, "another length without room");
+    memset(untouched, 0x7f, sizeof untouched);
     for (size_t size = 0; size <= length + 2; size++) {
         const size_t kept = size == 0 ? 0 : size <= length ? size - 1 : length;
         memset(part, 0x7f, sizeof part);
         expect(describe(what, part, size) == length, "another length with room for %zu", size);
         expect(!memcmp(part, whole, kept) && (size == 0 || part[kept] == 0), "other text in %zu bytes", size);
-        for (size_t i = size; i < sizeof part; i++) expect(part[i] == 0x7f, "overruns %zu bytes", size);
+        expect(!memcmp(part + size, untouched, sizeof part - size), "overruns %zu bytes", size);
     }
+}
+
+static void check_description(const kernel_case *k, facet_convention convention, uint32_t streams)
+{
+    facet_material m = rich_material_of(k);
+    m.convention.model = convention;
+    m.streams = streams;
+    if (streams & FACET_STREAM_F0) memset(m.fresnel.f0, 0, sizeof m.fresnel.f0);
+    const facet_plan plan = make_plan(&m, strict_scalar);
+    check_describe(describe_plan, &plan, "kernel: f32 scalar strict");
 }
 
 static void test_descriptions(void)
 {
     test("plans in words, at every size");
-    for (int i = 0; i < case_count(); i++)
-        for (uint32_t streams = 0; streams <= ALL_STREAMS; streams += FACET_STREAM_ALBEDO) {
-            facet_material m = rich_material();
-            m.diffuse.model = case_at(i)->material.diffuse.model;
-            m.specular = case_at(i)->material.specular;
-            m.fresnel.model = case_at(i)->material.fresnel.model;
-            m.streams = streams;
-            if (streams & FACET_STREAM_F0) memset(m.fresnel.f0, 0, sizeof m.fresnel.f0);
-            const facet_plan plan = make_plan(&m, strict_scalar);
-            check_describe(describe_plan, &plan, "kernel: f32 scalar strict");
-        }
+    for (int i = 0; i < case_count(); i++) {
+        const facet_convention convention = (facet_convention)(i % 3);
+        check_description(case_at(i), convention, 0);
+        check_description(case_at(i), convention, ALL_STREAMS);
+        for (uint32_t bit = 1; bit <= ALL_STREAMS; bit <<= 1)
+            if (bit & ALL_STREAMS) check_description(case_at(i), convention, bit);
+    }
     const facet_plan none = { { 0 } };
     char text[8];
     expect(facet_plan_describe(&none, text, sizeof text) == 0, "a plan of zeros is described");
@@ -388,9 +426,13 @@ static void check_lights(size_t count, facet_target target)
     facet_material m = rich_material();
     memset(m.emission, 0, sizeof m.emission);
     const facet_plan plan = make_plan(&m, target);
+    for (int c = 0; c < 3; c++) at_once.batch.position[c] = one_by_one.batch.position[c] = at_once.batch.f0[c];
     for (size_t i = 0; i < count; i++) {
         const sample s = random_sample(&r, SAMPLES_UNIFORM, 0.1f, 1);
-        lights[i] = (facet_light){ .direction = { s.l[0], s.l[1], s.l[2] }, .irradiance = { 1, 2, (float)i + 1 } };
+        lights[i] = (facet_light){ .kind = (facet_light_kind)(i % 3), .direction = { s.l[0], s.l[1], s.l[2] },
+                                   .irradiance = { 1, 2, (float)i + 1 },
+                                   .position = { 3 * s.n[0], 3 * s.n[1], 3 * s.n[2] }, .range = i % 2 ? 5 : 0,
+                                   .axis = { -s.n[0], -s.n[1], -s.n[2] }, .cos_inner = 0.5f, .cos_outer = -0.5f };
     }
     at_once.batch.lights = lights;
     at_once.batch.light_count = count;
@@ -435,11 +477,17 @@ static void test_unread_streams(void)
         facet_plan plan;
         size_t invalid = 0;
         expect(facet_plan_init(&plan, &glow, target_at(i), NULL) == FACET_OK, "no plan");
-        const facet_batch b = {
-            .count = COUNT, .normal = { zero, zero, one }, .albedo = { unread, unread, unread }, .sigma = unread,
-            .alpha = unread, .f0 = { unread, unread, unread }, .ambient = { 3, 3, 3 },
-            .radiance = { radiance[0], radiance[1], radiance[2] }, .invalid = &invalid,
+        facet_batch b = {
+            .count = COUNT, .ambient = { 3, 3, 3 }, .radiance = { radiance[0], radiance[1], radiance[2] },
+            .invalid = &invalid,
         };
+#define COMPONENTS_1(field) &b.field
+#define COMPONENTS_3(field) b.field
+#define FACET_STREAM(id, field, components, ...)                                                                      \
+        for (int c = 0; c < components; c++) (COMPONENTS_##components(field))[c] = unread;
+#include "streams.def"
+        b.normal[0] = b.normal[1] = zero, b.normal[2] = b.occlusion = one;
+        memset(b.view, 0, sizeof b.view);
         expect(facet_shade(&plan, &b, NULL) == FACET_OK && invalid == 0, "%zu are invalid", invalid);
         for (int k = 0; k < 3 * COUNT; k++)
             expect(radiance[k / COUNT][k % COUNT] == glow.emission[k / COUNT], "sample %d is %a", k % COUNT,

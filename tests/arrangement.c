@@ -4,151 +4,24 @@
 #include "samples.h"
 #include "targets.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-const stream_source all_per_sample[INPUTS] = { 0 };
-
-static const struct {
-    const char *name;
-    uint32_t bit;
-    int components, sources;
-    stream_source source[3];
-} inputs[INPUTS] = {
-    [NORMAL] = { "normal", FACET_STREAM_NORMAL, 3, 2, { PER_SAMPLE, UNIFORM } },
-    [VIEW] = { "view", FACET_STREAM_VIEW, 3, 3, { PER_SAMPLE, UNIFORM, ELSEWHERE } },
-    [ALBEDO] = { "albedo", FACET_STREAM_ALBEDO, 3, 3, { PER_SAMPLE, UNIFORM, ELSEWHERE } },
-    [SIGMA] = { "sigma", FACET_STREAM_SIGMA, 1, 3, { PER_SAMPLE, UNIFORM, ELSEWHERE } },
-    [ALPHA] = { "alpha", FACET_STREAM_ALPHA, 1, 3, { PER_SAMPLE, UNIFORM, ELSEWHERE } },
-    [F0] = { "f0", FACET_STREAM_F0, 3, 3, { PER_SAMPLE, UNIFORM, ELSEWHERE } },
-    [DIRECTION] = { "direction", 0, 3, 2, { PER_SAMPLE, ELSEWHERE } },
-    [IRRADIANCE] = { "irradiance", 0, 3, 2, { PER_SAMPLE, ELSEWHERE } },
-    [VISIBILITY] = { "visibility", 0, 1, 2, { PER_SAMPLE, ELSEWHERE } },
-};
-
-static const int light_counts[] = { 0, 1, 2, 5 };
-
-/* Around every multiple of a vector, of a group of vectors, of a block of 64. */
-static const unsigned char counts[] = {
-    0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28,
-    29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47, 48, 49, 61, 62, 63, 64, 65, 66, 67, 96,
-    127, 128, 129, 131,
-};
-static const unsigned char counts_for_slow_machines[] = {
-    0, 1, 2, 3, 4, 5, 7, 8, 9, 13, 15, 16, 17, 31, 32, 33, 49, 63, 64, 67, 128, 131,
-};
-
-enum { COVER_POINTER_NULL, COVER_ALL, COVER_NONE, COVER_RANDOM, COVER_ONE, COVERAGES };
-
-enum { ADD_NOTHING, ADD_EMISSION, ADD_AMBIENT, ADDED };
-
-/* How many samples in 64 have an edge value. */
-static const unsigned edges_in_64[] = { 0, 1, 16 };
-
-/* Places of a stream: so many floats beyond a vector's alignment; at the first page's start; at the last page's end. */
-enum { PLACE_LOW = 16, PLACE_HIGH, PLACES };
-enum { COVERAGE_LOW, COVERAGE_INSIDE, COVERAGE_HIGH, COVERAGE_PLACES };
-
-/* ---- The factors and what excludes what -------------------------------------------------------------------------- */
-
-static int tested_count(int level)
-{
-    return test_slow_machine ? counts_for_slow_machines[level] : counts[level];
-}
-
-/* The kernels that read a stream of the material; that need no view. */
-static uint64_t cases_with(uint32_t stream)
-{
-    uint64_t mask = 0;
-    for (int i = 0; i < case_count(); i++)
-        if (case_at(i)->streams & stream) mask |= (uint64_t)1 << i;
-    return mask;
-}
-
-static uint64_t cases_without_view(void)
-{
-    uint64_t mask = 0;
-    for (int i = 0; i < case_count(); i++)
-        if (!case_at(i)->view) mask |= (uint64_t)1 << i;
-    return mask;
-}
-
-/* The levels of a stream's source that stand for it. */
-static uint64_t levels_from(int stream, bool uniform)
-{
-    uint64_t mask = 0;
-    for (int i = 0; i < inputs[stream].sources; i++) {
-        const stream_source source = inputs[stream].source[i];
-        if (source == PER_SAMPLE || (uniform && source == UNIFORM)) mask |= (uint64_t)1 << i;
-    }
-    return mask;
-}
-
-static void require_stream(int stream, uint64_t *allowed)
-{
-    if (stream >= DIRECTION) allowed[FACTOR_LIGHTS] &= ~UINT64_C(1);
-    else if (stream >= ALBEDO) allowed[FACTOR_CASE] &= cases_with(inputs[stream].bit);
-}
-
-static void require(int factor, int level, uint64_t *allowed)
-{
-    if (factor >= FACTOR_SOURCE && factor < FACTOR_SOURCE + INPUTS) {
-        const int stream = factor - FACTOR_SOURCE;
-        const stream_source source = inputs[stream].source[level];
-        require_stream(stream, allowed);
-        if (source != PER_SAMPLE) allowed[FACTOR_IN_PLACE] &= ~(UINT64_C(2) << stream);
-        if (source != ELSEWHERE || stream != VIEW) return;
-        allowed[FACTOR_CASE] &= cases_without_view();
-        allowed[FACTOR_TWO_SIDED] &= 1;
-    } else if (factor >= FACTOR_PLACE && factor < FACTOR_PLACE + INPUTS) {
-        require_stream(factor - FACTOR_PLACE, allowed);
-        allowed[FACTOR_SOURCE + factor - FACTOR_PLACE] &= levels_from(factor - FACTOR_PLACE, true);
-    } else if (factor == FACTOR_PLACE + INPUTS) {
-        allowed[FACTOR_IN_PLACE] &= 1;
-    } else if (factor == FACTOR_IN_PLACE && level > 0) {
-        require_stream(level - 1, allowed);
-        allowed[FACTOR_SOURCE + level - 1] &= levels_from(level - 1, false);
-    } else if (factor == FACTOR_COVERAGE_PLACE) {
-        allowed[FACTOR_COVERAGE] &= ~(UINT64_C(1) << COVER_POINTER_NULL);
-    } else if (factor == FACTOR_TWO_SIDED && level) {
-        allowed[FACTOR_SOURCE + VIEW] &= levels_from(VIEW, true);
-    }
-}
-
-factor_space arrangement_space(void)
-{
-    factor_space space = { .factors = FACTORS, .require = require };
-    int *levels = space.levels;
-    levels[FACTOR_CASE] = case_count();
-    levels[FACTOR_LIGHTS] = sizeof light_counts / sizeof light_counts[0];
-    levels[FACTOR_TWO_SIDED] = levels[FACTOR_ACCUMULATE] = levels[FACTOR_COUNTED] = 2;
-    levels[FACTOR_ADDED] = ADDED;
-    levels[FACTOR_EDGES] = sizeof edges_in_64 / sizeof edges_in_64[0];
-    levels[FACTOR_IN_PLACE] = 1 + INPUTS;
-    levels[FACTOR_COVERAGE] = COVERAGES;
-    for (int s = 0; s < INPUTS; s++) levels[FACTOR_SOURCE + s] = inputs[s].sources;
-    for (int s = 0; s <= INPUTS; s++) levels[FACTOR_PLACE + s] = PLACES;
-    levels[FACTOR_COVERAGE_PLACE] = COVERAGE_PLACES;
-    levels[FACTOR_TARGET] = target_count();
-    levels[FACTOR_COUNT] = test_slow_machine ? sizeof counts_for_slow_machines : sizeof counts;
-    for (int f = 0; f < FACTORS; f++) expect(levels[f] <= MOST_LEVELS, "factor %d has %d levels", f, levels[f]);
-    return space;
-}
-
 /* ---- Values ------------------------------------------------------------------------------------------------------ */
 
 static guarded memory[COMPONENTS], coverage_memory;
 static arrangement now;
+static size_t drawn;             /* samples whose values are drawn: the count's, or one */
 
 #define CANARY 0x7fe5a5a5u       /* a NaN */
+enum { DRAWN_LIGHTS = 5 };       /* the others are these, sample by sample moved on */
 
-int component_of(int stream, int light)
+bool is_read(const arrangement *a, int stream)
 {
-    static const int first[INPUTS] = { [NORMAL] = 0, [VIEW] = 3, [ALBEDO] = 6, [SIGMA] = 9, [ALPHA] = 10, [F0] = 11,
-                                       [DIRECTION] = 14, [IRRADIANCE] = 17, [VISIBILITY] = 20 };
-    return first[stream] + (stream >= DIRECTION ? 7 * light : 0);
+    return inputs[stream].owner == OF_LIGHT || a->reads & inputs[stream].bit;
 }
 
 bool is_covered(const arrangement *a, size_t i)
@@ -156,52 +29,108 @@ bool is_covered(const arrangement *a, size_t i)
     return !a->coverage || a->coverage[i / 8] >> i % 8 & 1;
 }
 
-static void put(int stream, int light, size_t i, const float *a)
+static int lights_of(int stream) { return stream >= DIRECTION ? now.light_count : 1; }
+
+/* The highest of a stream's domain. */
+static float highest(int stream)
 {
-    for (int c = 0; c < inputs[stream].components; c++) now.values[component_of(stream, light) + c][i] = a[c];
+    const struct { float sigma_max; } at = { now.recipe->kernel->sigma_max }, *p = &at;
+    switch (stream) {
+#define FACET_STREAM(id, field, components, owner, low, high, title) case STREAM_##id: return high;
+#include "streams.def"
+    }
+    return 1;
+}
+
+/* The stream's value of the sample, or one between 0 and 1. */
+static void put(test_random *r, const sample *s, int stream, int light, size_t i)
+{
+    const float *from = (const float *)(const void *)((const char *)s + inputs[stream].sample);
+    for (int c = 0; c < inputs[stream].components; c++)
+        now.values[component_of(stream, light) + c][i] =
+            inputs[stream].sample == NOT_OF_SAMPLE ? (float)random_unit(r) * fminf(highest(stream), 1) : from[c];
 }
 
 static void draw_sample(test_random *r, size_t i)
 {
-    const float sigma_max = now.kernel->sigma_max;
-    for (int light = 0; light < MOST_LIGHTS; light++) {
-        const sample s = random_sample(r, (int)(random_u64(r) % SAMPLES_KINDS), 0.001f, sigma_max);
-        const float visibility = (float)random_unit(r);
-        put(DIRECTION, light, i, s.l);
-        put(IRRADIANCE, light, i, s.irradiance);
-        put(VISIBILITY, light, i, &visibility);
-        if (light > 0) continue;
-        put(NORMAL, 0, i, s.n);
-        put(VIEW, 0, i, s.v);
-        put(ALBEDO, 0, i, s.albedo);
-        put(SIGMA, 0, i, &s.sigma);
-        put(ALPHA, 0, i, &s.alpha);
-        put(F0, 0, i, s.f0);
+    for (int light = 0; light < now.light_count || light == 0; light++) {
+        if (light >= DRAWN_LIGHTS) break;
+        const int kind = (int)(random_u64(r) % SAMPLES_KINDS);
+        const sample s = random_sample(r, kind, 0.001f, now.recipe->kernel->sigma_max);
+        for (int stream = DIRECTION; stream < INPUTS && light < now.light_count; stream++) put(r, &s, stream, light, i);
+        for (int stream = 0; stream < BATCH_STREAMS && light == 0; stream++)
+            if (now.reads & inputs[stream].bit) put(r, &s, stream, 0, i);
     }
+}
+
+static void copy_lights(void)
+{
+    for (int light = DRAWN_LIGHTS; light < now.light_count; light++)
+        for (int c = 0; c < LIGHT_COMPONENTS; c++) {
+            const int to = LIGHT_AT + LIGHT_COMPONENTS * light + c;
+            const int from = LIGHT_AT + LIGHT_COMPONENTS * (light % DRAWN_LIGHTS) + c;
+            for (size_t i = 0; i < drawn; i++) now.values[to][i] = now.values[from][(i + (size_t)light) % drawn];
+        }
+}
+
+static float dot(int a, int b, size_t i)
+{
+    float sum = 0;
+    for (int c = 0; c < 3; c++) sum += now.values[a + c][i] * now.values[b + c][i];
+    return sum;
 }
 
 /* Turns the vector at `a` around where it is not on the side of `b`. */
 static void turn(int a, int b, size_t i)
 {
-    float sum = 0;
-    for (int c = 0; c < 3; c++) sum += now.values[a + c][i] * now.values[b + c][i];
-    for (int c = 0; c < 3 && sum < 0; c++) now.values[a + c][i] = -now.values[a + c][i];
+    const bool away = dot(a, b, i) < 0;
+    for (int c = 0; c < 3 && away; c++) now.values[a + c][i] = -now.values[a + c][i];
 }
 
-/* Uniform values are the first sample's. Vectors that are not uniform turn to where something is to be seen, mostly. */
-static void share_values(test_random *r)
+/* A tangent of its own goes across the normal. */
+static void straighten_tangent(size_t i)
 {
-    for (int s = 0; s < INPUTS; s++)
-        for (int light = 0; light < (s >= DIRECTION ? MOST_LIGHTS : 1) && now.sources[s] != PER_SAMPLE; light++)
+    double t[3], length2 = 0;
+    const double along = (double)dot(AT_TANGENT, AT_NORMAL, i);
+    for (int c = 0; c < 3; c++) {
+        t[c] = (double)now.values[AT_TANGENT + c][i] - along * (double)now.values[AT_NORMAL + c][i];
+        length2 += t[c] * t[c];
+    }
+    for (int c = 0; c < 3; c++) now.values[AT_TANGENT + c][i] = (float)(t[c] / sqrt(length2));
+}
+
+/* Lights with a position alone have no direction but what follows from it. */
+static bool has_direction(void)
+{
+    return now.light_count > 0 && now.lights[0].kind == FACET_LIGHT_DIRECTIONAL;
+}
+
+/* Uniform values are the first sample's; of a light's irradiance not all three are 0. */
+static void share_values(void)
+{
+    for (int s = 0; s < INPUTS; s++) {
+        if (now.sources[s] == PER_SAMPLE || !is_read(&now, s) || (s == DIRECTION && !has_direction())) continue;
+        for (int light = 0; light < lights_of(s); light++) {
+            float (*a)[MOST_COUNT] = &now.values[component_of(s, light)];
+            if (s == IRRADIANCE && a[0][0] + a[1][0] + a[2][0] == 0) a[1][0] = 1;
             for (int c = 0; c < inputs[s].components; c++)
-                for (size_t i = 1; i < MOST_COUNT; i++)
-                    now.values[component_of(s, light) + c][i] = now.values[component_of(s, light) + c][0];
-    for (size_t i = 0; i < MOST_COUNT; i++) {
+                for (size_t i = 1; i < drawn; i++) a[c][i] = a[c][0];
+        }
+    }
+}
+
+/* Vectors that are not uniform turn to where something is to be seen, mostly. */
+static void turn_vectors(test_random *r)
+{
+    for (size_t i = 0; i < drawn; i++) {
+        if (now.reads & FACET_STREAM_TANGENT && now.sources[STREAM_TANGENT] == PER_SAMPLE) straighten_tangent(i);
         if (random_u64(r) % 8 == 0) continue;
-        if (now.sources[VIEW] == PER_SAMPLE) turn(component_of(VIEW, 0), component_of(NORMAL, 0), i);
-        else if (now.sources[NORMAL] == PER_SAMPLE) turn(component_of(NORMAL, 0), component_of(VIEW, 0), i);
-        for (int light = 0; light < MOST_LIGHTS && now.sources[DIRECTION] == PER_SAMPLE; light++)
-            turn(component_of(DIRECTION, light), component_of(NORMAL, 0), i);
+        if (now.reads & FACET_STREAM_VIEW) {
+            if (now.sources[STREAM_VIEW] == PER_SAMPLE) turn(AT_VIEW, AT_NORMAL, i);
+            else if (now.sources[STREAM_NORMAL] == PER_SAMPLE) turn(AT_NORMAL, AT_VIEW, i);
+        }
+        if (now.sources[DIRECTION] != PER_SAMPLE && has_direction()) continue;
+        for (int light = 0; light < now.light_count; light++) turn(component_of(DIRECTION, light), AT_NORMAL, i);
     }
 }
 
@@ -215,12 +144,16 @@ static float draw_edge(test_random *r, bool finite)
 /* Here and there an edge value, NaN or infinity, in what is read per sample. */
 static void draw_edges(test_random *r, unsigned in_64)
 {
-    for (size_t i = 0; i < MOST_COUNT; i++) {
-        const int s = (int)(random_u64(r) % INPUTS), light = (int)(random_u64(r) % MOST_LIGHTS);
+    int streams[INPUTS], count = 0;
+    for (int s = 0; s < INPUTS; s++)
+        if (is_read(&now, s) && lights_of(s) > 0 && now.sources[s] == PER_SAMPLE) streams[count++] = s;
+    for (size_t i = 0; i < drawn; i++) {
+        now.ordinary[i] = count == 0 || random_u64(r) % 64 >= in_64;
+        if (now.ordinary[i]) continue;
+        const int s = streams[random_u64(r) % (uint64_t)count];
+        const int light = (int)(random_u64(r) % (uint64_t)lights_of(s));
         const int component = component_of(s, light) + (int)(random_u64(r) % (uint64_t)inputs[s].components);
-        const float edge = draw_edge(r, false);
-        now.ordinary[i] = random_u64(r) % 64 >= in_64 || now.sources[s] != PER_SAMPLE;
-        if (!now.ordinary[i]) now.values[component][i] = edge;
+        now.values[component][i] = draw_edge(r, false);
     }
 }
 
@@ -228,11 +161,12 @@ static void draw_edges(test_random *r, unsigned in_64)
 static void draw_uniform_edges(test_random *r)
 {
     for (int s = 0; s < INPUTS; s++) {
-        const bool light = s == IRRADIANCE && now.sources[s] == ELSEWHERE;
+        const bool light = s == IRRADIANCE && now.sources[s] == ELSEWHERE && now.light_count > 0;
+        const bool uniform = is_read(&now, s) && now.sources[s] == UNIFORM;
         const float edge = draw_edge(r, light);
-        if (random_u64(r) % 8 || !(light || now.sources[s] == UNIFORM)) continue;
+        if (random_u64(r) % 8 || !(light || uniform)) continue;
         if (light && !(now.values[component_of(s, 0) + 1][0] > 0)) continue;      /* it may not be all 0 */
-        for (size_t i = 0; i < MOST_COUNT; i++) {
+        for (size_t i = 0; i < drawn; i++) {
             now.values[component_of(s, 0)][i] = edge;
             now.ordinary[i] = false;
         }
@@ -253,15 +187,96 @@ static void draw_constants(test_random *r, int added)
 {
     for (int c = 0; c < 3; c++) {
         const float emission = (float)random_unit(r) - 0.25f, ambient = (float)random_unit(r) - 0.25f;
-        now.emission[c] = added == ADD_EMISSION ? emission : 0;
-        now.ambient[c] = added == ADD_AMBIENT ? ambient : 0;
+        now.numbers.emission[c] = added == ADD_EMISSION || added == ADD_ALL ? emission : 0;
+        now.ambient[c] = added == ADD_AMBIENT || added == ADD_ALL ? ambient : 0;
+        for (int i = 0; i < 4; i++) {
+            const float harmonic = 2 * (float)random_unit(r) - (i ? 1 : 0.5f);
+            now.sh[i][c] = added == ADD_HARMONICS || added == ADD_ALL ? harmonic : 0;
+        }
     }
+}
+
+static void draw_numbers(test_random *r, int numbers)
+{
+    facet_material *m = &now.numbers;
+    *m = now.recipe->kernel->material;
+    m->convention.model = now.recipe->convention;
+    if (numbers == NUMBERS_OF_KERNEL) return;
+    m->specular.scale = 0.5f + (float)random_unit(r);
+    m->fresnel.f90 = (float)random_unit(r);
+    m->fresnel.eta_outside = 1 + 0.5f * (float)random_unit(r);
+    m->fresnel.polarisation = 2 * (float)random_unit(r) - 1;
+    for (int c = 0; c < 3 && m->fresnel.model == FACET_FRESNEL_SCHLICK_F82; c++) {
+        m->fresnel.f82[c] = numbers == NUMBERS_DERIVED ? 0 : (float)random_unit(r);
+        if (numbers != NUMBERS_DERIVED) continue;
+        m->fresnel.eta[c] = 0.1f + 3 * (float)random_unit(r);
+        m->fresnel.k[c] = 4 * (float)random_unit(r);
+    }
+}
+
+/* ---- Lights with a position -------------------------------------------------------------------------------------- */
+
+static facet_light_kind kind_of(int kinds, int light)
+{
+    return (facet_light_kind)(kinds == KINDS_IN_TURN ? light % KINDS_IN_TURN : kinds);
+}
+
+/* Where they see the origin along the direction of their first light; uniform: where the first sample does. */
+static void draw_positions(test_random *r, const float *origin)
+{
+    for (size_t i = 0; i < drawn; i++) {
+        const float distance = 0.25f + 2 * (float)random_unit(r);
+        for (int c = 0; c < 3; c++) {
+            float *a = now.values[AT_POSITION + c];
+            a[i] = origin[c] - distance * now.values[component_of(DIRECTION, 0) + c][i];
+            if (now.sources[STREAM_POSITION] == UNIFORM) a[i] = a[0];
+        }
+    }
+}
+
+/* Points a spot light at the first sample, more or less; one in four has cones that are equal. */
+static void aim(test_random *r, facet_light *light)
+{
+    double axis[3], length2 = 0;
+    for (int c = 0; c < 3; c++) {
+        axis[c] = (double)now.values[AT_POSITION + c][0] - (double)light->position[c] + random_unit(r) - 0.5;
+        length2 += axis[c] * axis[c];
+    }
+    for (int c = 0; c < 3; c++) light->axis[c] = (float)(axis[c] / sqrt(length2));
+    light->cos_outer = (float)random_unit(r) - 0.5f;
+    light->cos_inner = random_u64(r) % 4 ? light->cos_outer + 0.25f + 0.25f * (float)random_unit(r) : light->cos_outer;
+}
+
+static void draw_lights(test_random *r, int kinds)
+{
+    for (int i = 0; i < now.light_count; i++) {
+        facet_light *light = &now.lights[i];
+        *light = (facet_light){ .kind = kind_of(kinds, i) };
+        if (light->kind == FACET_LIGHT_DIRECTIONAL) continue;
+        for (int c = 0; c < 3; c++) light->position[c] = 4 * (float)random_unit(r) - 2;
+        light->range = random_u64(r) & 1 ? 2 + 4 * (float)random_unit(r) : 0;
+    }
+}
+
+/* Samples around the first light that has a position, and spot lights at samples. */
+static void place_samples(test_random *r)
+{
+    if (!(now.reads & FACET_STREAM_POSITION)) return;
+    draw_positions(r, now.lights[has_direction()].position);
+    for (int i = 0; i < now.light_count; i++)
+        if (now.lights[i].kind == FACET_LIGHT_SPOT) aim(r, &now.lights[i]);
 }
 
 static void draw_values(test_random *r, const design *d)
 {
-    for (size_t i = 0; i < MOST_COUNT; i++) draw_sample(r, i);
-    share_values(r);
+    drawn = now.count > 0 ? now.count : 1;
+    draw_numbers(r, d->level[FACTOR_NUMBERS]);
+    for (size_t i = 0; i < drawn; i++) draw_sample(r, i);
+    copy_lights();
+    draw_lights(r, d->level[FACTOR_LIGHT_KIND]);
+    share_values();
+    turn_vectors(r);
+    place_samples(r);
     draw_edges(r, edges_in_64[d->level[FACTOR_EDGES]]);
     if (d->level[FACTOR_EDGES] > 0) draw_uniform_edges(r);
     draw_destination(r);
@@ -275,21 +290,26 @@ static float *place_at(int component, int level, size_t length)
     float *first = (float *)(void *)memory[component].first, *end = (float *)(void *)memory[component].end;
     if (level == PLACE_LOW) return first;
     if (level == PLACE_HIGH) return end - length;
-    return first + 256 + (level + 5 * component) % 16;
+    return first + 256 + (offsets[level] + 5 * component) % 16;
 }
+
+static size_t length_of(int stream) { return now.sources[stream] == PER_SAMPLE ? now.count : 1; }
+
+/* Whether it has a place of its own. */
+static bool is_placed(int stream) { return is_read(&now, stream) && now.sources[stream] != ELSEWHERE; }
 
 static void place_stream(int stream, int level)
 {
-    const size_t length = now.sources[stream] == PER_SAMPLE ? now.count : 1;
-    for (int light = 0; light < (stream >= DIRECTION ? MOST_LIGHTS : 1); light++)
+    for (int light = 0; light < lights_of(stream) && is_placed(stream); light++)
         for (int c = 0; c < inputs[stream].components; c++) {
             const int component = component_of(stream, light) + c;
-            now.place[component] = now.sources[stream] == ELSEWHERE ? NULL : place_at(component, level, length);
-            if (now.place[component]) memcpy(now.place[component], now.values[component], length * sizeof(float));
+            now.place[component] = place_at(component, level, length_of(stream));
+            memcpy(now.place[component], now.values[component], length_of(stream) * sizeof(float));
         }
 }
 
-/* Radiance on an input (its components turned round, or its one component as green), or on its own. */
+/* Radiance on an input (its components turned round, or its one component as green, the others anywhere), or on its
+ * own. */
 static void place_radiance(int in_place, int level)
 {
     for (int c = 0; c < 3; c++) {
@@ -299,7 +319,7 @@ static void place_radiance(int in_place, int level)
             now.place[to] = now.place[from];
             memcpy(now.values[to], now.values[from], sizeof now.values[to]);
         } else {
-            now.place[to] = place_at(to, level, now.count);
+            now.place[to] = place_at(to, level < 0 ? 0 : level, now.count);
             memcpy(now.place[to], now.values[to], now.count * sizeof(float));
         }
     }
@@ -323,15 +343,13 @@ static void place_coverage(test_random *r, int kind, int level)
 
 facet_material material_of(const arrangement *a, const stream_source *sources)
 {
-    facet_material m = a->kernel->material;
-    for (int s = ALBEDO; s <= F0; s++)
-        if (sources[s] != ELSEWHERE) m.streams |= inputs[s].bit & a->kernel->streams;
-    m.diffuse.sigma = m.streams & FACET_STREAM_SIGMA ? NAN : a->values[component_of(SIGMA, 0)][0];
-    m.specular.alpha = m.streams & FACET_STREAM_ALPHA ? NAN : a->values[component_of(ALPHA, 0)][0];
-    for (int c = 0; c < 3; c++) {
-        m.diffuse.albedo[c] = m.streams & FACET_STREAM_ALBEDO ? NAN : a->values[component_of(ALBEDO, 0) + c][0];
-        m.fresnel.f0[c] = m.streams & FACET_STREAM_F0 ? NAN : a->values[component_of(F0, 0) + c][0];
-        m.emission[c] = a->emission[c];
+    facet_material m = a->numbers;
+    for (int s = 0; s < BATCH_STREAMS; s++) {
+        float *number = (float *)(void *)((char *)&m + inputs[s].number);
+        if (!is_parameter(s) || !is_read(a, s)) continue;
+        if (sources[s] != ELSEWHERE) m.streams |= inputs[s].bit;
+        for (int c = 0; c < inputs[s].components; c++)
+            number[c] = sources[s] == ELSEWHERE ? a->values[component_of(s, 0) + c][0] : NAN;
     }
     return m;
 }
@@ -339,32 +357,32 @@ facet_material material_of(const arrangement *a, const stream_source *sources)
 static void point_light(const arrangement *a, float *const *at, int number, facet_light *light,
                         const stream_source *sources)
 {
-    *light = (facet_light){ .kind = FACET_LIGHT_DIRECTIONAL };
+    *light = a->lights[number];
+    const bool from_streams = light->kind == FACET_LIGHT_DIRECTIONAL && sources[DIRECTION] == PER_SAMPLE;
     for (int c = 0; c < 3; c++) {
         const int direction = component_of(DIRECTION, number) + c, irradiance = component_of(IRRADIANCE, number) + c;
-        light->direction[c] = sources[DIRECTION] == PER_SAMPLE ? NAN : a->values[direction][0];
+        const bool has_number = light->kind == FACET_LIGHT_DIRECTIONAL && !from_streams;
+        light->direction[c] = has_number ? a->values[direction][0] : NAN;
         light->irradiance[c] = sources[IRRADIANCE] == PER_SAMPLE ? NAN : a->values[irradiance][0];
-        if (sources[DIRECTION] == PER_SAMPLE) light->direction_of[c] = at[direction];
+        if (from_streams) light->direction_of[c] = at[direction];
         if (sources[IRRADIANCE] == PER_SAMPLE) light->irradiance_of[c] = at[irradiance];
     }
-    if (a->has_visibility) light->visibility = at[component_of(VISIBILITY, number)];
+    if (sources[VISIBILITY] == PER_SAMPLE) light->visibility = at[component_of(VISIBILITY, number)];
 }
 
 facet_batch point_batch(const arrangement *a, float *const *at, facet_light *lights, const stream_source *sources)
 {
-    facet_batch b = { .lights = lights, .light_count = (size_t)a->lights, .flags = a->flags,
-                      .sigma = at[component_of(SIGMA, 0)], .alpha = at[component_of(ALPHA, 0)] };
-    for (int c = 0; c < 3; c++) {
-        b.normal[c] = at[component_of(NORMAL, 0) + c];
-        b.view[c] = a->has_view ? at[component_of(VIEW, 0) + c] : NULL;
-        b.albedo[c] = at[component_of(ALBEDO, 0) + c];
-        b.f0[c] = at[component_of(F0, 0) + c];
-        b.radiance[c] = at[RADIANCE_AT + c];
-        b.ambient[c] = a->ambient[c];
-    }
-    for (int s = NORMAL; s <= F0; s++)
+    facet_batch b = { .lights = lights, .light_count = (size_t)a->light_count, .flags = a->flags };
+    for (int s = 0; s < BATCH_STREAMS; s++) {
+        const float **stream = (const float **)(void *)((char *)&b + inputs[s].batch);
+        if (!is_read(a, s) || sources[s] == ELSEWHERE) continue;
+        for (int c = 0; c < inputs[s].components; c++) stream[c] = at[component_of(s, 0) + c];
         if (sources[s] == UNIFORM) b.uniform |= inputs[s].bit;
-    for (int i = 0; i < a->lights; i++) point_light(a, at, i, &lights[i], sources);
+    }
+    for (int c = 0; c < 3; c++) b.radiance[c] = at[RADIANCE_AT + c];
+    memcpy(b.ambient, a->ambient, sizeof b.ambient);
+    memcpy(b.sh, a->sh, sizeof b.sh);
+    for (int i = 0; i < a->light_count; i++) point_light(a, at, i, &lights[i], sources);
     return b;
 }
 
@@ -373,56 +391,47 @@ facet_batch point_batch(const arrangement *a, float *const *at, facet_light *lig
 static void describe(const design *d)
 {
     const int *level = d->level;
-    int length = snprintf(now.words, sizeof now.words, "%s, %zu samples, %d lights, flags %u, coverage %d, in place %d, ",
-                          now.kernel->name, now.count, now.lights, (unsigned)now.flags, level[FACTOR_COVERAGE],
-                          level[FACTOR_IN_PLACE]);
-    size_t end = (size_t)length;
-    length = snprintf(now.words + end, sizeof now.words - end, "added %d, edges %d%s;", level[FACTOR_ADDED],
-                      level[FACTOR_EDGES], now.counted ? ", counted" : "");
-    end += (size_t)length;
+    size_t end = (size_t)snprintf(now.words, sizeof now.words,
+                                  "%s, convention %d%s, %zu samples, %d lights of kind %d, flags %u, ",
+                                  now.recipe->kernel->name, (int)now.recipe->convention,
+                                  now.recipe->from_others ? " from others" : "", now.count, now.light_count,
+                                  level[FACTOR_LIGHT_KIND], (unsigned)now.flags);
+    end += (size_t)snprintf(now.words + end, sizeof now.words - end,
+                            "coverage %d, in place %d, numbers %d, added %d, edges %d%s;", level[FACTOR_COVERAGE],
+                            level[FACTOR_IN_PLACE], level[FACTOR_NUMBERS], level[FACTOR_ADDED], level[FACTOR_EDGES],
+                            now.counted ? ", counted" : "");
     for (int s = 0; s < INPUTS && end < sizeof now.words; s++)
         if (level[FACTOR_SOURCE + s] >= 0)
             end += (size_t)snprintf(now.words + end, sizeof now.words - end, " %s %d@%d", inputs[s].name,
                                     (int)now.sources[s], level[FACTOR_PLACE + s]);
 }
 
-design plain_design(int target, int kernel, uint64_t seed)
+/* What of the batch is read, wherever it is. */
+static uint32_t streams_read(const int *level)
 {
-    const factor_space space = arrangement_space();
-    test_random r = { seed };
-    design d;
-    for (int f = 0; f < FACTORS; f++) d.level[f] = 0;
-    for (int s = ALBEDO; s <= F0; s++) {
-        const bool read = case_at(kernel)->streams & inputs[s].bit, per_sample = random_u64(&r) & 1;
-        d.level[FACTOR_SOURCE + s] = !read ? -1 : per_sample ? 0 : (int)(random_u64(&r) % (uint64_t)inputs[s].sources);
-    }
-    for (int s = DIRECTION; s <= VISIBILITY; s++) d.level[FACTOR_SOURCE + s] = 1;
-    for (int f = FACTOR_PLACE; f <= FACTOR_PLACE + INPUTS; f++) d.level[f] = (int)(random_u64(&r) % PLACES);
-    d.level[FACTOR_EDGES] = (int)(random_u64(&r) % (uint64_t)space.levels[FACTOR_EDGES]);
-    d.level[FACTOR_COUNTED] = random_u64(&r) % 4 == 0;
-    d.level[FACTOR_TARGET] = target;
-    d.level[FACTOR_CASE] = kernel;
-    d.level[FACTOR_LIGHTS] = 1;
-    d.level[FACTOR_COUNT] = space.levels[FACTOR_COUNT] - 1 - (int)(random_u64(&r) % 4);
-    return d;
+    uint32_t reads = now.recipe->reads | FACET_STREAM_NORMAL;
+    if (now.sources[STREAM_VIEW] != ELSEWHERE) reads |= FACET_STREAM_VIEW;
+    if (now.sources[STREAM_OCCLUSION] != ELSEWHERE) reads |= FACET_STREAM_OCCLUSION;
+    if (now.light_count > 0 && level[FACTOR_LIGHT_KIND] != FACET_LIGHT_DIRECTIONAL) reads |= FACET_STREAM_POSITION;
+    return reads;
 }
 
 const arrangement *arrange(const design *d, int number)
 {
     const int *level = d->level;
     test_random r = { (uint64_t)number };
-    now.kernel = case_at(level[FACTOR_CASE]);
+    now.recipe = recipe_at(level[FACTOR_RECIPE]);
     now.target = target_at(level[FACTOR_TARGET]);
     now.count = (size_t)tested_count(level[FACTOR_COUNT]);
-    now.lights = light_counts[level[FACTOR_LIGHTS]];
+    now.light_count = light_counts[level[FACTOR_LIGHTS]];
     now.flags = (level[FACTOR_ACCUMULATE] ? FACET_ACCUMULATE : 0u) | (level[FACTOR_TWO_SIDED] ? FACET_TWO_SIDED : 0u);
     for (int s = 0; s < INPUTS; s++) {
         const int source = level[FACTOR_SOURCE + s];
-        now.sources[s] = source < 0 ? ELSEWHERE : inputs[s].source[source];
+        now.sources[s] = source < 0 ? ELSEWHERE : source_at(s, source);
     }
+    now.reads = streams_read(level);
     now.counted = level[FACTOR_COUNTED];
-    now.has_view = now.sources[VIEW] != ELSEWHERE;
-    now.has_visibility = now.sources[VISIBILITY] != ELSEWHERE;
+    memset(now.place, 0, sizeof now.place);
     describe(d);
     draw_values(&r, d);
     for (int s = 0; s < INPUTS; s++) place_stream(s, level[FACTOR_PLACE + s]);
@@ -436,17 +445,6 @@ const arrangement *arrange(const design *d, int number)
 static void fill_with_canaries(float *a, size_t count)
 {
     for (size_t i = 0; i < count; i++) a[i] = from_bits(CANARY);
-}
-
-static size_t length_of(int component)
-{
-    for (int s = 0; s < INPUTS; s++)
-        for (int light = 0; light < (s >= DIRECTION ? MOST_LIGHTS : 1); light++) {
-            const int first = component_of(s, light);
-            if (component >= first && component < first + inputs[s].components)
-                return now.sources[s] == PER_SAMPLE ? now.count : 1;
-        }
-    return now.count;
 }
 
 /* The memory that a place is in. */
@@ -470,12 +468,21 @@ static bool canaries_live(const float *from, const float *to)
     return true;
 }
 
+static bool is_as_it_was(const arrangement *a, int stream)
+{
+    for (int light = 0; light < lights_of(stream) && is_placed(stream); light++)
+        for (int c = 0; c < inputs[stream].components; c++) {
+            const int i = component_of(stream, light) + c;
+            if (!is_radiance(a, a->place[i]) && memcmp(a->place[i], a->values[i], length_of(stream) * sizeof(float)))
+                return false;
+        }
+    return true;
+}
+
 const char *find_damage(const arrangement *a)
 {
-    for (int i = 0; i < RADIANCE_AT; i++) {
-        if (!a->place[i] || is_radiance(a, a->place[i])) continue;
-        if (memcmp(a->place[i], a->values[i], length_of(i) * sizeof(float))) return "an input was written";
-    }
+    for (int s = 0; s < INPUTS; s++)
+        if (!is_as_it_was(a, s)) return "an input was written";
     for (int c = 0; c < 3; c++) {
         const float *radiance = a->place[RADIANCE_AT + c];
         const guarded *m = memory_of(radiance);
@@ -488,8 +495,11 @@ const char *find_damage(const arrangement *a)
 
 void clear_arrangement(void)
 {
-    for (int i = 0; i < COMPONENTS; i++)
-        if (now.place[i]) fill_with_canaries(now.place[i], length_of(i));
+    for (int s = 0; s < INPUTS; s++)
+        for (int light = 0; light < lights_of(s) && is_placed(s); light++)
+            for (int c = 0; c < inputs[s].components; c++)
+                fill_with_canaries(now.place[component_of(s, light) + c], length_of(s));
+    for (int c = 0; c < 3; c++) fill_with_canaries(now.place[RADIANCE_AT + c], now.count);
 }
 
 void open_arrangements(void)

@@ -1,5 +1,6 @@
 /* Values that are not finite or outside their domains, in every stream. */
 #include "bad_values.h"
+#include "recipes.h"
 
 #include <float.h>
 #include <math.h>
@@ -7,60 +8,120 @@
 
 /* ---- Values that are not finite ---------------------------------------------------------------------------------- */
 
-/* A float of a sample, and whether the kernel reads it. */
+/* A float of a sample, and the stream that it goes into; 0: one that every kernel reads. */
 typedef struct { const char *name; size_t at; uint32_t stream; } component;
 
-#define VECTOR(field, stream)                                                                                         \
+#define COMPONENT_1(field, stream) { #field, offsetof(sample, field), stream }
+#define COMPONENT_3(field, stream)                                                                                    \
     { #field " x", offsetof(sample, field), stream },                                                                 \
     { #field " y", offsetof(sample, field) + sizeof(float), stream },                                                 \
     { #field " z", offsetof(sample, field) + 2 * sizeof(float), stream }
+#define OF_GEOMETRY(id, field, components)
+#define OF_SOURCE(id, field, components)
+#define OF_MATERIAL(id, field, components) COMPONENT_##components(field, FACET_STREAM_##id),
 
 static const component components[] = {
-    VECTOR(n, 0), VECTOR(v, 0), VECTOR(l, 0), VECTOR(irradiance, 0), VECTOR(albedo, FACET_STREAM_ALBEDO),
-    VECTOR(f0, FACET_STREAM_F0), { "sigma", offsetof(sample, sigma), FACET_STREAM_SIGMA },
-    { "alpha", offsetof(sample, alpha), FACET_STREAM_ALPHA },
+#define FACET_STREAM(id, field, components, owner, ...) OF_##owner(id, field, components)
+#include "streams.def"
+    COMPONENT_3(n, 0), COMPONENT_3(v, 0), COMPONENT_3(l, 0), COMPONENT_3(irradiance, 0),
+    COMPONENT_3(tangent, FACET_STREAM_TANGENT), COMPONENT_3(position, FACET_STREAM_POSITION),
 };
 enum { COMPONENTS = sizeof components / sizeof components[0] };
-
-static bool is_read(const subject *u, const component *k)
-{
-    return !k->stream || u->kernel->streams & k->stream;
-}
 
 static float *component_of(sample *s, const component *k)
 {
     return (float *)((char *)s + k->at);
 }
 
-static void not_finite(const subject *u)
+static bool is_direction(const component *k)
 {
-    static const extras constant = { .emission = { 1, 1, 1 }, .ambient = { 1, 1, 1 } };
+    return k->at >= offsetof(sample, l) && k->at < offsetof(sample, l) + sizeof ((sample *)0)->l;
+}
+
+/* A light's place takes the place of its direction. */
+static bool is_read(const subject *u, const sample *s, const component *k)
+{
+    if (k->stream == FACET_STREAM_POSITION) return s->light;
+    return k->stream ? u->kernel->streams & k->stream : !(s->light && is_direction(k));
+}
+
+/* The ends of a stream's domain, for this kernel. */
+static void domain_of(const subject *u, uint32_t stream, float *lowest, float *highest)
+{
+    const struct { float sigma_max; } at = { u->kernel->sigma_max }, *p = &at;
+    switch (stream) {
+#define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
+    case FACET_STREAM_##id:                                                                                           \
+        *lowest = low;                                                                                                \
+        *highest = high;                                                                                              \
+        break;
+#include "streams.def"
+    }
+}
+
+static const float odd[] = { NAN, INFINITY, -INFINITY };
+static const extras all_of_1 = { .emission = { 1, 1, 1 }, .ambient = { 1, 1, 1 } };
+
+enum { AMIDST = 37 };
+
+/* Each of these components in turn is not finite at three places of the samples: 0 there and counted, where it is
+ * read. */
+static void expect_invalid(const subject *u, const sample *clean, bool parameters)
+{
     static const int places[] = { 0, 9, 36 };
-    const float bad[] = { NAN, INFINITY, -INFINITY };
-    enum { COUNT = 37 };
-    sample clean[COUNT];
-    rgb expected[COUNT];
-    ordinary(u, clean, COUNT);
-    shade(u, &constant, clean, COUNT, expected);
+    rgb expected[AMIDST];
+    shade(u, &all_of_1, clean, AMIDST, expected);
     for (int k = 0; k < COMPONENTS; k++)
-        for (int i = 0; i < 9; i += test_slow_machine ? 4 : 1) {
-            sample s[COUNT];
-            rgb radiance[COUNT], want[COUNT];
-            const int place = places[i / 3];
-            const bool read = is_read(u, &components[k]);
+        for (int i = 0; i < 3; i += test_slow_machine ? 2 : 1) {
+            if (!parameters && components[k].stream >= FACET_STREAM_ALBEDO) break;
+            sample s[AMIDST];
+            rgb radiance[AMIDST], want[AMIDST];
+            const int place = places[i];
+            const bool read = is_read(u, clean, &components[k]);
             memcpy(s, clean, sizeof s);
             memcpy(want, expected, sizeof want);
-            *component_of(&s[place], &components[k]) = bad[i % 3];
+            *component_of(&s[place], &components[k]) = odd[(i + k) % 3];
             if (read) memset(want[place], 0, sizeof want[place]);
-            expect(shade(u, &constant, s, COUNT, radiance) == read, "%s: %s of %d not counted right", u->kernel->name,
+            expect(shade(u, &all_of_1, s, AMIDST, radiance) == read, "%s: %s of %d not counted right", u->kernel->name,
                    components[k].name, place);
-            expect_same(u, radiance, want, COUNT, components[k].name);
+            expect_same(u, radiance, want, AMIDST, components[k].name);
         }
+}
+
+static void not_finite(const subject *u)
+{
+    sample s[AMIDST];
+    ordinary(u, s, AMIDST);
+    expect_invalid(u, s, true);
+}
+
+static void not_finite_under_a_spot(const subject *u)
+{
+    static const facet_light spot = { .kind = FACET_LIGHT_SPOT, .position = { 0.25f, 2, -1 }, .range = 9,
+                                      .axis = { 0, -0.6f, 0.8f }, .cos_inner = 0.5f, .cos_outer = -0.5f };
+    sample s[AMIDST];
+    ordinary(u, s, AMIDST);
+    for (int i = 0; i < AMIDST; i++) light_sample(&s[i], &spot, 3);
+    expect_invalid(u, s, false);
+}
+
+static void zero_tangent(const subject *u)
+{
+    const bool read = u->kernel->streams & FACET_STREAM_TANGENT;
+    sample s[9];
+    rgb radiance[9], before[9];
+    ordinary(u, s, 9);
+    shade(u, &all_of_1, s, 9, before);
+    memset(s[2].tangent, 0, sizeof s[2].tangent);
+    memcpy(s[7].tangent, (float[]){ -0.0f, 0, -0.0f }, sizeof s[7].tangent);
+    expect(shade(u, &all_of_1, s, 9, radiance) == (read ? 2 : 0), "%s: not counted right", u->kernel->name);
+    if (read) memset(before[2], 0, sizeof before[2]);
+    if (read) memset(before[7], 0, sizeof before[7]);
+    expect_same(u, radiance, before, 9, "a zero tangent, or its neighbour");
 }
 
 static void not_finite_visibility(const subject *u)
 {
-    const float bad[] = { NAN, INFINITY, -INFINITY };
     float visibility[9] = { 1, 0.5f, 0, 1, 2, -1, 1, 1, 1 };
     const extras x = { .visibility = visibility };
     sample s[9];
@@ -68,17 +129,34 @@ static void not_finite_visibility(const subject *u)
     ordinary(u, s, 9);
     shade(u, &x, s, 9, before);
     for (int i = 0; i < 3; i++) {
-        visibility[6] = bad[i];
+        visibility[6] = odd[i];
         expect(shade(u, &x, s, 9, radiance) == 1, "%s: not one invalid sample", u->kernel->name);
         memset(before[6], 0, sizeof before[6]);
         expect_same(u, radiance, before, 9, "visibility");
     }
 }
 
+/* Occlusion is read where there is ambient light to be occluded. */
+static void not_finite_occlusion(const subject *u)
+{
+    float occlusion[9] = { 1, 0.5f, 0, 1, 2, -1, 1, 1, 1 };
+    const extras x = { .ambient = { 1, 2, 3 }, .occlusion = occlusion };
+    sample s[9];
+    rgb before[9], radiance[9];
+    if (!has_diffuse(u)) return;
+    ordinary(u, s, 9);
+    shade(u, &x, s, 9, before);
+    for (int i = 0; i < 3; i++) {
+        occlusion[6] = odd[i];
+        expect(shade(u, &x, s, 9, radiance) == 1, "%s: not one invalid sample", u->kernel->name);
+        memset(before[6], 0, sizeof before[6]);
+        expect_same(u, radiance, before, 9, "occlusion");
+    }
+}
+
 static void not_finite_destination(const subject *u)
 {
     static const extras accumulate = { .flags = FACET_ACCUMULATE };
-    const float bad[] = { NAN, INFINITY, -INFINITY };
     sample s[9];
     rgb before[9], radiance[9];
     ordinary(u, s, 9);
@@ -86,7 +164,7 @@ static void not_finite_destination(const subject *u)
         for (int c = 0; c < 3; c++) {
             memset(before, 0, sizeof before);
             memset(radiance, 0, sizeof radiance);
-            radiance[4][c] = bad[i];
+            radiance[4][c] = odd[i];
             shade(u, &accumulate, s, 9, before);
             memset(before[4], 0, sizeof before[4]);
             expect(shade(u, &accumulate, s, 9, radiance) == 1, "%s: not one invalid sample", u->kernel->name);
@@ -116,21 +194,22 @@ static void not_covered(const subject *u)
 
 /* ---- Parameters outside their domains ---------------------------------------------------------------------------- */
 
-/* Setting a component to each of `outside` gives the bytes of setting it to `inside`; also beside other light, where a
- * negative part would not end as 0. */
-static void expect_clamped(const subject *u, const component *k, const float *outside, int count, float inside)
+/* Setting a float of the samples to each of `outside` gives the bytes of setting it to `inside`; also beside other
+ * light, where a negative part would not end as 0. */
+static void expect_clamped(const subject *u, const facet_material *m, const component *k, const float *outside,
+                           int count, float inside)
 {
     static const extras cases[] = { { .flags = 0 }, { .emission = { 1, 1, 1 }, .ambient = { 1, 1, 1 } } };
-    for (int e = 0; e < 2; e++) {
+    for (int e = test_slow_machine; e < 2; e++) {
         sample s[16];
         rgb clamped[16], radiance[16];
         ordinary(u, s, 16);
         for (int i = 0; i < 16; i++) *component_of(&s[i], k) = inside;
-        expect(shade(u, &cases[e], s, 16, clamped) == 0, "%s: counted as invalid", u->kernel->name);
+        expect(shade_material(u, m, &cases[e], s, 16, clamped) == 0, "%s: counted as invalid", u->kernel->name);
         for (int o = 0; o < count; o++) {
             for (int i = 0; i < 16; i++) *component_of(&s[i], k) = outside[o];
-            expect(shade(u, &cases[e], s, 16, radiance) == 0, "%s: %s %a: counted as invalid", u->kernel->name, k->name,
-                   (double)outside[o]);
+            expect(shade_material(u, m, &cases[e], s, 16, radiance) == 0, "%s: %s %a: counted as invalid",
+                   u->kernel->name, k->name, (double)outside[o]);
             expect_same(u, radiance, clamped, 16, k->name);
         }
     }
@@ -139,13 +218,30 @@ static void expect_clamped(const subject *u, const component *k, const float *ou
 static const float negative[] = { -0.0f, -0x1p-149f, -1e-20f, -0.5f, -1, -1e20f, -FLT_MAX };
 enum { NEGATIVE = sizeof negative / sizeof negative[0] };
 
-static void negative_counts_as_zero(const subject *u)
+static void expect_clamped_to_domain(const subject *u, const facet_material *m, const component *k)
 {
-    for (int k = 0; k < COMPONENTS; k++) {
-        const size_t at = components[k].at;
-        if (at >= offsetof(sample, albedo) && at != offsetof(sample, alpha))
-            expect_clamped(u, &components[k], negative, NEGATIVE, 0);
-    }
+    float low = 0, high = 0;
+    domain_of(u, k->stream, &low, &high);
+    const float below[] = { 0, 0x1p-149f, 1e-20f, nextafterf(low, 0) };
+    const float above[] = { nextafterf(high, INFINITY), 2 * high, 1e20f, FLT_MAX };
+    expect_clamped(u, m, k, negative, NEGATIVE, low);
+    if (low > 0) expect_clamped(u, m, k, below, 4, low);
+    if (high < FLT_MAX) expect_clamped(u, m, k, above, 4, high);
+}
+
+static void parameters_outside(const subject *u)
+{
+    const facet_material material = streaming_material(u);
+    for (int k = 0; k < COMPONENTS; k++)
+        if (u->kernel->promised & components[k].stream) expect_clamped_to_domain(u, &material, &components[k]);
+}
+
+static void negative_irradiance(const subject *u)
+{
+    const facet_material material = streaming_material(u);
+    for (int k = 0; k < COMPONENTS; k++)
+        if (components[k].at >= offsetof(sample, irradiance) && !components[k].stream)
+            expect_clamped(u, &material, &components[k], negative, NEGATIVE, 0);
 }
 
 static void visibility_outside(const subject *u)
@@ -193,45 +289,95 @@ static void negative_destination(const subject *u)
     expect_same(u, radiance, zero, 9, "destination");
 }
 
-static const component *find_component(const char *name)
+static void occlusion_outside(const subject *u)
 {
-    for (int k = 0; k < COMPONENTS; k++)
-        if (!strcmp(components[k].name, name)) return &components[k];
-    return NULL;
+    static const float outside[] = { -0.0f, -0x1p-149f, -1, -FLT_MAX, 0x1.000002p0f, 2, 1e20f, FLT_MAX };
+    static const float inside[] = { 0, 0, 0, 0, 1, 1, 1, 1 };
+    const extras x = { .ambient = { 1, 2, 3 }, .sh = { { 1, 1, 1 } }, .occlusion = outside };
+    const extras y = { .ambient = { 1, 2, 3 }, .sh = { { 1, 1, 1 } }, .occlusion = inside };
+    sample s[8];
+    rgb radiance[8], clamped[8];
+    ordinary(u, s, 8);
+    expect(shade(u, &x, s, 8, radiance) == 0, "%s: counted as invalid", u->kernel->name);
+    shade(u, &y, s, 8, clamped);
+    expect_same(u, radiance, clamped, 8, "occlusion");
 }
 
-static void alpha_outside(const subject *u)
+/* ---- Parameters that follow from others -------------------------------------------------------------------------- */
+
+/* Where shade takes the streams of other conventions from. */
+static const component sources[] = {
+    { "base", offsetof(sample, albedo[1]), FACET_STREAM_BASE },
+    { "metallic", offsetof(sample, f0[0]), FACET_STREAM_METALLIC },
+    { "specular_level", offsetof(sample, f0[1]), FACET_STREAM_SPECULAR_LEVEL },
+    { "roughness", offsetof(sample, alpha), FACET_STREAM_ROUGHNESS },
+    { "glossiness", offsetof(sample, alpha), FACET_STREAM_GLOSSINESS },
+};
+enum { SOURCES = sizeof sources / sizeof sources[0] };
+
+/* Runs the test with each stream that a recipe of the kernel reads, all of them per sample. */
+static void with_recipes(const subject *u, void (*run)(const subject *, const facet_material *, const component *))
 {
-    static const float above[] = { 0x1.000002p0f, 2, 1e20f, FLT_MAX }, below[] = { 0, 0x1p-149f, 1e-20f, 0.9e-4f };
-    const component *alpha = find_component("alpha");
-    expect_clamped(u, alpha, above, 4, 1);
-    expect_clamped(u, alpha, below, 4, FACET_ALPHA_FLOOR);
-    expect_clamped(u, alpha, negative, NEGATIVE, FACET_ALPHA_FLOOR);
+    for (int i = 0; i < recipe_count(); i++) {
+        const recipe *r = recipe_at(i);
+        facet_material m = u->kernel->material;
+        if (r->kernel != u->kernel || !is_derived(r)) continue;
+        m.convention.model = r->convention;
+        m.streams = r->reads & ~(FACET_STREAM_ALBEDO - 1u);
+        for (int k = 0; k < COMPONENTS; k++)
+            if (m.streams & components[k].stream) run(u, &m, &components[k]);
+        for (int k = 0; k < SOURCES; k++)
+            if (m.streams & sources[k].stream) run(u, &m, &sources[k]);
+    }
 }
 
-static void sigma_and_f0_above(const subject *u)
+static void expect_invalid_source(const subject *u, const facet_material *m, const component *k)
 {
-    static const float above[] = { 0x1.922p0f, 2, 1e20f, FLT_MAX };
-    if (u->kernel->sigma_max > 0) expect_clamped(u, find_component("sigma"), above, 4, u->kernel->sigma_max);
-    expect_clamped(u, find_component("f0 x"), above, 4, 1);
-    expect_clamped(u, find_component("f0 z"), above, 4, 1);
+    sample clean[AMIDST];
+    rgb expected[AMIDST];
+    ordinary(u, clean, AMIDST);
+    expect(shade_material(u, m, &all_of_1, clean, AMIDST, expected) == 0, "%s: invalid", u->kernel->name);
+    for (int i = 0; i < 3; i++) {
+        sample s[AMIDST];
+        rgb radiance[AMIDST], want[AMIDST];
+        const int place = 18 * i;
+        memcpy(s, clean, sizeof s);
+        memcpy(want, expected, sizeof want);
+        *component_of(&s[place], k) = odd[i];
+        memset(want[place], 0, sizeof want[place]);
+        expect(shade_material(u, m, &all_of_1, s, AMIDST, radiance) == 1, "%s: %s of %g not counted", u->kernel->name,
+               k->name, (double)odd[i]);
+        expect_same(u, radiance, want, AMIDST, k->name);
+    }
 }
+
+static void sources_not_finite(const subject *u) { with_recipes(u, expect_invalid_source); }
+static void sources_outside(const subject *u) { with_recipes(u, expect_clamped_to_domain); }
 
 /* ---- Anything ---------------------------------------------------------------------------------------------------- */
 
 static float any_float(test_random *r, bool finite)
 {
     const uint64_t bits = random_u64(r);
-    const float odd[] = { NAN, INFINITY, -INFINITY };
     if (!finite && bits % 64 == 0) return odd[(bits >> 8) % 3];
     if (bits % 3 == 0) return edge_values[(bits >> 8) % (unsigned)edge_count];
     return ldexpf((float)(2 * random_unit(r) - 1), (int)((bits >> 8) % 300) - 170);
 }
 
+static double largest_of(const float *a)
+{
+    return fmax(fmax(fabs(a[0]), fabs(a[1])), fabs(a[2]));
+}
+
 static void anything(const subject *u)
 {
     static const extras constant = { .emission = { 0, 1e-30f, 1e30f }, .ambient = { 1e30f, 0, 1 },
+                                     .sh = { { 1, -1e30f, 1e30f }, { 1e38f, -1, 0 }, { -1e38f, 1, 1 }, { 1 } },
                                      .flags = FACET_TWO_SIDED };
+    static const facet_light lights[] = {
+        { .kind = FACET_LIGHT_POINT, .position = { 1, -1e-20f, 0 }, .range = 1e20f },
+        { .kind = FACET_LIGHT_SPOT, .position = { 1e20f, 1, 0 }, .axis = { 1e-30f, 1e30f, 1 }, .cos_inner = 1 },
+    };
     test_random random = { 13 };
     for (int round = 0; round < (test_slow_machine ? 4 : 100); round++) {
         sample s[MOST];
@@ -239,15 +385,16 @@ static void anything(const subject *u)
         size_t bad = 0, perhaps = 0;
         for (int i = 0; i < MOST; i++) {
             bool invalid = false;
-            double largest = 0;
+            s[i].light = round % 8 < 4 ? NULL : &lights[round % 2];
             for (int k = 0; k < COMPONENTS; k++) {
                 float *x = component_of(&s[i], &components[k]);
                 *x = any_float(&random, round % 2);
-                if (is_read(u, &components[k]) && !isfinite(*x)) invalid = true;
+                if (is_read(u, &s[i], &components[k]) && !isfinite(*x)) invalid = true;
             }
-            for (int c = 0; c < 3; c++) largest = fmax(largest, fabs(s[i].n[c]));
-            bad += invalid || largest == 0;
-            perhaps += !invalid && largest > 0 && largest < 1e-18;
+            const bool tangent = u->kernel->streams & FACET_STREAM_TANGENT;
+            const double least = fmin(largest_of(s[i].n), tangent ? largest_of(s[i].tangent) : 1);
+            bad += invalid || least == 0;
+            perhaps += !invalid && least > 0 && least < 1e-18;
         }
         const size_t counted = shade(u, round % 4 < 2 ? &constant : NULL, s, MOST, radiance);
         expect(counted >= bad && counted <= bad + perhaps, "%s: %zu counted as invalid, not %zu to %zu",
@@ -259,13 +406,18 @@ static void anything(const subject *u)
 
 const trap bad_values[] = {
     { "NaN or infinite: 0 and counted, neighbours as ever", not_finite },
+    { "NaN or infinite under a spot light", not_finite_under_a_spot },
     { "NaN or infinite visibility", not_finite_visibility },
+    { "NaN or infinite occlusion", not_finite_occlusion },
+    { "NaN or infinite in what parameters follow from", sources_not_finite },
     { "NaN or infinite destination", not_finite_destination },
     { "what is not covered is not counted", not_covered },
-    { "alpha outside [floor, 1] is clamped", alpha_outside },
-    { "sigma and f0 above their domains are clamped", sigma_and_f0_above },
+    { "a zero tangent: 0 and counted where it is read", zero_tangent },
+    { "parameters outside their domains are clamped", parameters_outside },
+    { "what parameters follow from is clamped to its own domain", sources_outside },
     { "visibility outside [0, 1] is clamped", visibility_outside },
-    { "negative streams count as 0", negative_counts_as_zero },
+    { "occlusion outside [0, 1] is clamped", occlusion_outside },
+    { "negative irradiance counts as 0", negative_irradiance },
     { "negative constants count as 0", negative_constants },
     { "a negative destination counts as 0", negative_destination },
     { "any floats at all", anything },

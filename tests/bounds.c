@@ -11,30 +11,60 @@
 
 const char *const goal_words[GOALS] = { "rel", "grazing", "peak", "plain" };
 
-enum { WITNESS_FLOATS = 14, MOST_ROWS = 512 };
+enum { WITNESS_FLOATS = 24, MOST_ROWS = 512 };
 
 /* ---- The promise ------------------------------------------------------------------------------------------------- */
 
+static double dot(const float *a, const float *b)
+{
+    return (double)a[0] * b[0] + (double)a[1] * b[1] + (double)a[2] * b[2];
+}
+
 static bool is_unit(const float *a)
 {
-    const double length2 = (double)a[0] * a[0] + (double)a[1] * a[1] + (double)a[2] * a[2];
-    return fabs(length2 - 1) <= 0x1p-21;
+    return fabs(dot(a, a) - 1) <= 0x1p-21;
+}
+
+/* Where there is one. */
+static bool is_tangent(const float *a, const float *n)
+{
+    return dot(a, a) == 0 || (is_unit(a) && fabs(dot(a, n)) <= 0x1p-21);
 }
 
 bool in_domain(const sample *s, cosines c)
 {
-    return c.nl >= 0x1p-22 && c.nv >= 0x1p-22 && is_unit(s->n) && is_unit(s->v) && is_unit(s->l);
+    return c.nl >= 0x1p-22 && c.nv >= 0x1p-22 && is_unit(s->n) && is_unit(s->v) && (s->light || is_unit(s->l))
+        && is_tangent(s->tangent, s->n);
 }
 
-bool in_plain_domain(const sample *s, cosines c)
+static bool is_anisotropic(facet_distribution model)
 {
-    return in_domain(s, c) && c.nl > 5e-4 && c.nv > 5e-4 && s->alpha >= 0.01f;
+    return model == FACET_DISTRIBUTION_GGX_ANISOTROPIC || model == FACET_DISTRIBUTION_BECKMANN_ANISOTROPIC;
+}
+
+static bool is_lobe(facet_distribution model)
+{
+    return model == FACET_DISTRIBUTION_PHONG || model == FACET_DISTRIBUTION_PHONG_MODIFIED
+        || model == FACET_DISTRIBUTION_BLINN_PHONG || model == FACET_DISTRIBUTION_BLINN_PHONG_NORMALISED;
+}
+
+/* The width of what peaks. */
+static double alpha_of(facet_distribution model, const sample *s)
+{
+    const double exponent = fmin(fmax(s->exponent, FACET_EXPONENT_MIN), FACET_EXPONENT_MAX);
+    const double alpha = fmin(fmax(s->alpha, FACET_ALPHA_FLOOR), 1), alpha_y = fmax(s->alpha_y, FACET_ALPHA_FLOOR);
+    return is_lobe(model) ? sqrt(2 / (exponent + 2)) : is_anisotropic(model) ? fmin(alpha, alpha_y) : alpha;
+}
+
+bool in_plain_domain(const error_bound *b, const sample *s, cosines c)
+{
+    return in_domain(s, c) && c.nl > 5e-4 && c.nv > 5e-4 && alpha_of(b->distribution, s) >= 0.01;
 }
 
 double bound_at(const error_bound *b, const sample *s, cosines c, int *goal)
 {
-    const double alpha = fmin(fmax(s->alpha, FACET_ALPHA_FLOOR), 1);
-    const double terms[] = { b->limit[GOAL_REL], b->limit[GOAL_GRAZING] / c.nl, b->limit[GOAL_PEAK] / alpha };
+    const double alpha = alpha_of(b->distribution, s), nl = is_anisotropic(b->distribution) ? fmin(c.nl, c.nv) : c.nl;
+    const double terms[] = { b->limit[GOAL_REL], b->limit[GOAL_GRAZING] / nl, b->limit[GOAL_PEAK] / alpha };
     double sum = 0;
     int largest = GOAL_REL;
     for (int i = GOAL_REL; i <= GOAL_PEAK; i++) {
@@ -52,6 +82,15 @@ double error_over_magnitude(float got, double want, double magnitude, float irra
     return error > 0 ? error / magnitude : 0;
 }
 
+void make_grey(sample *s, int channel)
+{
+    float *const colours[] = { s->albedo, s->f0, s->eta, s->k, s->irradiance };
+    for (int i = 0; i < 5; i++) {
+        const float value = colours[i][channel];
+        for (int c = 0; c < 3; c++) colours[i][c] = value;
+    }
+}
+
 /* ---- The table --------------------------------------------------------------------------------------------------- */
 
 static accuracy_row rows[MOST_ROWS];
@@ -60,18 +99,13 @@ static int row_count = -1;
 /* The witness's numbers in the table's order. */
 static void witness_fields(sample *s, float *fields[WITNESS_FLOATS])
 {
+    float *const vectors[] = { s->n, s->v, s->l, s->tangent, s->position };
+    float *const numbers[] = { s->albedo, &s->sigma, &s->alpha, &s->alpha_y, &s->exponent, s->f0, s->eta, s->k,
+                               s->irradiance };
     int count = 0;
-    for (int c = 0; c < 3; c++) {
-        fields[c] = &s->n[c];
-        fields[3 + c] = &s->v[c];
-        fields[6 + c] = &s->l[c];
-        count += 3;
-    }
-    fields[count++] = s->albedo;
-    fields[count++] = &s->sigma;
-    fields[count++] = &s->alpha;
-    fields[count++] = s->f0;
-    fields[count++] = s->irradiance;
+    for (int i = 0; i < 5; i++)
+        for (int c = 0; c < 3; c++) fields[count++] = &vectors[i][c];
+    for (int i = 0; i < 9; i++) fields[count++] = numbers[i];
 }
 
 /* The next field of a line, which is cut there; "" past the last. */
@@ -101,11 +135,9 @@ static bool read_witness(accuracy_row *row, char *line)
     float *fields[WITNESS_FLOATS];
     witness_fields(&w->s, fields);
     for (int i = 0; i < WITNESS_FLOATS; i++) *fields[i] = strtof(next_field(&line), NULL);
-    for (int c = 1; c < 3; c++) {
-        w->s.albedo[c] = w->s.albedo[0];
-        w->s.f0[c] = w->s.f0[0];
-        w->s.irradiance[c] = w->s.irradiance[0];
-    }
+    make_grey(&w->s, 0);
+    const kernel_case *kernel = find_case(row->name);
+    w->s.light = kernel && kernel->light.kind != FACET_LIGHT_DIRECTIONAL ? &kernel->light : NULL;
     w->got = strtof(next_field(&line), NULL);
     w->want = strtod(next_field(&line), NULL);
     return true;
@@ -122,8 +154,10 @@ static accuracy_row *add_row(const char *name, facet_tier tier)
 {
     if (row_count == MOST_ROWS || strlen(name) >= sizeof rows[0].name) return NULL;
     accuracy_row *row = &rows[row_count++];
+    const kernel_case *kernel = find_case(name);
     strcpy(row->name, name);
     row->tier = tier;
+    if (kernel) row->bound.distribution = kernel->material.specular.model;
     return row;
 }
 
@@ -176,15 +210,20 @@ void write_accuracy_head(FILE *file)
 {
     fputs("# Error bounds of the kernels, and the worst inputs found: written by `facet-check --update accuracy`.\n"
           "# |got - want| <= 2^-24 magnitude (rel + grazing/nl + peak/alpha)\n"
-          "#     for unit vectors, nl, nv >= 2^-22, alpha >= 1e-4;\n"
+          "#     for unit vectors, nl, nv >= 2^-22, alpha >= 1e-4; of an anisotropic distribution the smaller alpha,\n"
+          "#     and the smaller of nl and nv; of a lobe alpha is sqrt(2/(exponent + 2));\n"
           "# |got - want| <= plain magnitude for nl, nv > 5e-4, alpha >= 0.01;\n"
           "#     <= p99.9 magnitude for 99.9 % of samples, half uniform, half in the lobe, alpha >= 0.01.\n"
-          "# magnitude: the radiance, but for terms that cancel: 1 - F of `coupled` counts as 1, Fujii's s0 as |s0|,\n"
-          "#     Schlick's (1 - vh)^5 as (1 - vh)^4.\n"
+          "# magnitude (tests/reference.h): the radiance, but terms that cancel count as their absolute values: s0 of\n"
+          "#     Fujii and EON, the terms of the full Oren-Nayar and of F82, 1 - F of `coupled` as 1, Rp as Rs, |w|\n"
+          "#     under a light with a position as |v| + |l|; one of Schlick's factors 1 - vh counts as 1; e^-x counts\n"
+          "#     1 + x times, at least 2^-100; and where a small step turns much, f(x) counts as f(x) +\n"
+          "#     max |f(x +- s) - f(x)|/s, s = 2^-21: Rs and Rp of vh, Phong's lobe of its angle, a light's range of\n"
+          "#     the distance, its cone of the cosine.\n"
           "# reached: the error over the bound. got: on arch; in the strict tier, on every architecture.\n"
           "# bound\tcase\ttier\trel\tgrazing\tpeak\tplain\tp99.9\n"
-          "# witness\tcase\ttier\tgoal\treached\tarch\tnx\tny\tnz\tvx\tvy\tvz\tlx\tly\tlz\talbedo\tsigma\talpha\tf0"
-          "\tirradiance\tgot\twant\n", file);
+          "# witness\tcase\ttier\tgoal\treached\tarch\tnx\tny\tnz\tvx\tvy\tvz\tlx\tly\tlz\ttx\tty\ttz"
+          "\tpx\tpy\tpz\talbedo\tsigma\talpha\talpha_y\texponent\tf0\teta\tk\tirradiance\tgot\twant\n", file);
 }
 
 void write_accuracy(FILE *file, const accuracy_row *row)

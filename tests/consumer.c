@@ -39,6 +39,7 @@ int main(void)
         || facet_encode(&image, &error))
         return 1;
     if (pixel[0] != 255 || pixel[1] != 255 || pixel[2] != 255 || pixel[3] != 255) return 2;
+    if (facet_alpha_from_roughness(0.5f) != 0.25f) return 3;
     printf("facet %s\n", facet_version());
     return 0;
 }

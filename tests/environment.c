@@ -205,12 +205,15 @@ typedef struct {
     facet_target target;
     facet_plan plan;
     sample_batch samples;
-    facet_light lights[2];
+    facet_light lights[4];
     size_t invalid;
     uint8_t pixels[4 * COUNT];
     char text[TEXT];
     facet_status plan_status, shade_status, encode_status;
 } picture;
+
+/* Where a material's parameters come from. */
+enum { FROM_NUMBERS, FROM_STREAMS, FROM_SOURCES, ORIGINS };
 
 static void call_plan(void *argument)
 {
@@ -248,10 +251,32 @@ static const struct { const char *name; void (*call)(void *); } calls[] = {
 };
 enum { CALLS = sizeof calls / sizeof calls[0] };
 
-/* Subnormal, huge and ordinary numbers, all of them per sample or all in the material. */
-static picture open_picture(const kernel_case *k, facet_target target, bool streams)
+static facet_material material_from(const kernel_case *k, int origin)
 {
-    picture p = { .material = k->material, .target = target };
+    facet_material m = k->material;
+    m.streams = origin == FROM_STREAMS ? k->promised : 0;
+    m.diffuse.sigma = k->sigma_max / 3;
+    m.specular.alpha = 0.1f;
+    m.specular.alpha_y = 0.3f;
+    m.specular.exponent = 12.5f;
+    m.fresnel.eta_outside = 1.1f;
+    for (int c = 0; c < 3; c++) {
+        m.diffuse.albedo[c] = c == 1 ? 0x1.1p-127f : 0.7f;
+        m.fresnel.eta[c] = 1.5f + 0.1f * (float)c;
+        m.fresnel.k[c] = 0.3f;
+        m.emission[c] = c == 2 ? 0x1p-149f : 0;
+    }
+    if (origin != FROM_SOURCES) return m;
+    m.convention.model = FACET_CONVENTION_METALLIC_ROUGHNESS;
+    m.streams = k->promised | FACET_STREAM_BASE | FACET_STREAM_METALLIC | FACET_STREAM_ROUGHNESS
+        | FACET_STREAM_SPECULAR_LEVEL;
+    return m;
+}
+
+/* Subnormal, huge and ordinary numbers. */
+static picture open_picture(const kernel_case *k, facet_target target, int origin)
+{
+    picture p = { .material = material_from(k, origin), .target = target };
     sample samples[COUNT];
     test_random r = { 11 };
     for (int i = 0; i < COUNT; i++) {
@@ -260,19 +285,23 @@ static picture open_picture(const kernel_case *k, facet_target target, bool stre
         if (i % 8 == 4) samples[i].albedo[i / 8 % 3] = 0x1.7p-128f;
     }
     p.samples = batch_of(samples, COUNT);
-    p.material.streams = streams ? k->streams : 0;
-    p.material.diffuse.sigma = k->sigma_max / 3;
-    p.material.specular.alpha = 0.1f;
-    p.material.fresnel.eta_outside = 1.1f;
+    facet_batch *b = &p.samples.batch;
     for (int c = 0; c < 3; c++) {
-        p.material.diffuse.albedo[c] = c == 1 ? 0x1.1p-127f : 0.7f;
-        p.material.fresnel.eta[c] = 1.5f + 0.1f * (float)c;
-        p.material.fresnel.k[c] = 0.3f;
-        p.material.emission[c] = c == 2 ? 0x1p-149f : 0;
-        p.samples.batch.ambient[c] = 0x1.3p-126f;
+        b->ambient[c] = 0x1.3p-126f;
+        b->sh[0][c] = 0.3f;
+        b->sh[1 + c][c] = c ? -0.4f : 0x1.1p-140f;
+        b->base[c] = b->albedo[c];
     }
-    p.lights[0] = p.samples.batch.lights[0];
+    b->occlusion = b->metallic = b->f0[0];
+    b->specular_level = b->f0[1];
+    b->roughness = b->alpha;
+    p.lights[0] = b->lights[0];
     p.lights[1] = (facet_light){ .direction = { 0.6f, -0.48f, 0.64f }, .irradiance = { 0.7f, 0x1p-140f, 3.1f } };
+    p.lights[2] = (facet_light){ .kind = FACET_LIGHT_POINT, .irradiance = { 0x1p-140f, 1e30f, 2.5f },
+                                 .position = { 0.3f, 1.7f, -0.9f }, .range = 3.3f };
+    p.lights[3] = (facet_light){ .kind = FACET_LIGHT_SPOT, .irradiance = { 5, 0.1f, 0.2f },
+                                 .position = { -0.3f, 0, 0x1p-130f }, .axis = { 0.48f, 0.6f, 0.64f },
+                                 .cos_inner = 0.9f, .cos_outer = 0.1f };
     return p;
 }
 
@@ -280,7 +309,7 @@ static picture open_picture(const kernel_case *k, facet_target target, bool stre
 static void connect(picture *p)
 {
     p->samples.batch.lights = p->lights;
-    p->samples.batch.light_count = 2;
+    p->samples.batch.light_count = sizeof p->lights / sizeof p->lights[0];
     p->samples.batch.invalid = &p->invalid;
 }
 
@@ -297,9 +326,9 @@ static bool same_results(const picture *a, const picture *b)
 /* ---- Tests ------------------------------------------------------------------------------------------------------- */
 
 /* A call under a setting, with sticky flags set or none. */
-static void check_call(const char *name, void (*call)(void *), picture *p, const setting *s, uint64_t flags)
+static void check_call(const char *name, void (*call)(void *), void *argument, const setting *s, uint64_t flags)
 {
-    excursion e = { .under = s, .flags = flags, .call = call, .argument = p };
+    excursion e = { .under = s, .flags = flags, .call = call, .argument = argument };
     const char *fault = make_excursion(&e);
     expect(!fault, "%s: %s", name, fault);
     expect(fault || e.before == e.after, "%s leaves %08" PRIx64 " where it found %08" PRIx64, name, e.after, e.before);
@@ -308,15 +337,15 @@ static void check_call(const char *name, void (*call)(void *), picture *p, const
 static const uint64_t stickies[] = { 0, FLAGS };
 enum { STICKIES = sizeof stickies / sizeof stickies[0] };
 
-static void check_picture(const kernel_case *k, facet_target target, bool streams, const setting *s)
+static void check_picture(const kernel_case *k, facet_target target, int origin, const setting *s)
 {
-    picture usual = open_picture(k, target, streams);
+    picture usual = open_picture(k, target, origin);
     connect(&usual);
     for (int i = 0; i < CALLS; i++) calls[i].call(&usual);
     expect(!usual.plan_status && !usual.shade_status && !usual.encode_status, "%s: refused", k->name);
 
     for (int f = 0; f < STICKIES; f++) {
-        picture here = open_picture(k, target, streams);
+        picture here = open_picture(k, target, origin);
         connect(&here);
         for (int i = 0; i < CALLS; i++) check_call(calls[i].name, calls[i].call, &here, s, stickies[f]);
         expect(same_results(&usual, &here), "%s: other bytes", k->name);
@@ -325,11 +354,11 @@ static void check_picture(const kernel_case *k, facet_target target, bool stream
     free_batch(&usual.samples);
 }
 
-/* The other functions compute nothing; this one formats numbers. */
+/* One that formats numbers. */
 static void check_description(const setting *s)
 {
     const kernel_case *k = case_at(case_count() - 1);
-    picture p = open_picture(k, target_at(0), false);
+    picture p = open_picture(k, target_at(0), FROM_NUMBERS);
     char usual[TEXT];
     test("%s: facet_plan_describe", s->name);
     call_plan(&p);
@@ -343,10 +372,69 @@ static void check_description(const setting *s)
     free_batch(&p.samples);
 }
 
+/* Conversions and indices, of numbers that the settings round otherwise, flush, or trap at. */
+typedef struct {
+    float a, b, c;
+    float single[6], index[12];
+    facet_specular_glossiness glossy;
+    facet_metallic_roughness rough;
+} conversion;
+
+static void call_single(void *argument)
+{
+    conversion *k = argument;
+    k->single[0] = facet_f0_from_eta(k->a, k->b, k->c);
+    k->single[1] = facet_eta_from_f0(k->a);
+    k->single[2] = facet_alpha_from_roughness(k->a);
+    k->single[3] = facet_roughness_from_alpha(k->a);
+    k->single[4] = facet_exponent_from_alpha(k->a);
+    k->single[5] = facet_alpha_from_exponent(k->b);
+}
+
+static void call_conventions(void *argument)
+{
+    conversion *k = argument;
+    const facet_metallic_roughness rough = { { k->a, k->b, k->c }, k->b, k->a, k->c };
+    const facet_specular_glossiness glossy = { { k->c, k->a, k->b }, { k->a, k->b, k->c }, k->a };
+    k->glossy = facet_to_specular_glossiness(rough);
+    k->rough = facet_to_metallic_roughness(glossy);
+}
+
+static void call_indices(void *argument)
+{
+    static const float wavelength[] = { 400.1f, 480.3f, 555.7f, 660.9f, 750.3f };
+    conversion *k = argument;
+    const float n[] = { 0.1f, 0x1p-140f, 1.3f, 1e30f, 2.7f }, extinction[] = { 0.3f, 2.9f, 0x1p-149f, 0.7f, 1e-38f };
+    facet_index_of_spectrum(wavelength, n, extinction, 5, k->index, k->index + 3, NULL);
+    facet_index_of_metal(FACET_METAL_GOLD, k->index + 6, k->index + 9);
+}
+
+static void check_conversions(const setting *s)
+{
+    static const struct { const char *name; void (*call)(void *); } of[] = {
+        { "a number", call_single }, { "a convention", call_conventions }, { "an index", call_indices },
+    };
+    static const conversion values[] = {
+        { .a = 0.3f, .b = 0.7f, .c = 0.9f }, { .a = 0x1p-140f, .b = 0.1f, .c = 0x1.3p-126f },
+        { .a = 1e30f, .b = NAN, .c = 0.6f }, { .a = 1, .b = 0, .c = INFINITY },
+    };
+    test("%s: conversions", s->name);
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++)
+        for (size_t k = 0; k < sizeof of / sizeof of[0]; k++)
+            for (int f = 0; f < STICKIES; f++) {
+                conversion usual = values[i], here = values[i];
+                of[k].call(&usual);
+                check_call(of[k].name, of[k].call, &here, s, stickies[f]);
+                expect(!memcmp(&usual, &here, sizeof usual), "%s: other bytes of %g, %g, %g", of[k].name,
+                       (double)values[i].a, (double)values[i].b, (double)values[i].c);
+            }
+}
+
 static void check_target(facet_target target, const setting *s)
 {
     for (int i = 0; i < case_count(); i++)
-        for (int streams = 0; streams < 2; streams++) check_picture(case_at(i), target, streams, s);
+        for (int origin = 0; origin < ORIGINS; origin++)
+            if (!test_slow_machine || origin == i % ORIGINS) check_picture(case_at(i), target, origin, s);
 }
 
 /* Where the machine ignores it, one test that may fail but does not pass. */
@@ -358,6 +446,7 @@ static void check_setting(const setting *s)
         skip("this machine computes as usual under it");
     } else {
         check_description(s);
+        check_conversions(s);
     }
     for (int i = 0; i < target_count(); i++) {
         if (obeyed) test("%s: %s", s->name, target_words(target_at(i)));

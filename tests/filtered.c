@@ -1,6 +1,7 @@
 /* filtered [WORD ...]: this build holds the models of these words and refuses the others (no words: it holds all).
  * Prints a line for every material that it shades: the models, and a hash of the strict results. */
 #include "facet.h"
+#include "models.def"                /* the properties of its rows */
 
 #include <stdio.h>
 #include <string.h>
@@ -9,6 +10,31 @@ enum { COUNT = 37, KINDS = FACET_KIND_FRESNEL + 1 };
 
 static char **words;
 static int word_count, failures;
+
+/* Lobes, and the maskings that go with a distribution, by models.def. */
+static bool is_lobe(int distribution)
+{
+    switch (distribution) {
+#define FACET_DISTRIBUTION(id, name, word, reads, properties, title)                                                  \
+    case FACET_DISTRIBUTION_##id: return (properties) & LOBE;
+#include "models.def"
+    }
+    return false;
+}
+
+enum {
+#define FACET_DISTRIBUTION(id, name, ...) DISTRIBUTION_##name = FACET_DISTRIBUTION_##id,
+#define FACET_MASKING(id, name, ...) MASKING_##name = FACET_MASKING_##id,
+#include "models.def"
+};
+
+static bool go_together(int masking, int distribution)
+{
+#define FACET_VISIBILITY(masking_, distribution_, properties)                                                         \
+    if (masking == MASKING_##masking_ && distribution == DISTRIBUTION_##distribution_) return true;
+#include "models.def"
+    return false;
+}
 
 static bool expected(facet_kind kind, int value)
 {
@@ -45,7 +71,8 @@ static uint32_t shaded(const facet_plan *plan)
         .count = COUNT,
         .normal = { &zero, &zero, &one },
         .view = { stream[0], stream[1], stream[2] },
-        .uniform = FACET_STREAM_NORMAL,
+        .tangent = { &one, &zero, &zero },
+        .uniform = FACET_STREAM_NORMAL | FACET_STREAM_TANGENT,
         .lights = &light,
         .light_count = 1,
         .radiance = { radiance[0], radiance[1], radiance[2] },
@@ -64,12 +91,15 @@ static void try_material(const int *value)
     const facet_target target = { FACET_ARCH_SCALAR, FACET_TIER_STRICT };
     const facet_material material = {
         .diffuse = { (facet_diffuse)value[0], { 0.5f, 0.25f, 0.75f }, 0.3f },
-        .specular = { (facet_distribution)value[1], (facet_masking)value[2], 0.3f },
-        .fresnel = { .model = (facet_fresnel)value[3], .f0 = { 0.04f, 0.5f, 0.9f } },
+        .specular = { .model = (facet_distribution)value[1], .masking = (facet_masking)value[2],
+                      .alpha = 0.3f, .alpha_y = 0.15f, .exponent = 20.0f },
+        .fresnel = { .model = (facet_fresnel)value[3], .f0 = { 0.04f, 0.5f, 0.9f }, .f82 = { 0.1f, 0.4f, 0.8f },
+                     .eta = { 1.5f, 0.2f, 0.9f }, .k = { 0.0f, 3.0f, 6.0f } },
     };
     bool has = expected(FACET_KIND_DIFFUSE, value[0]) && expected(FACET_KIND_DISTRIBUTION, value[1]);
-    if (value[1] != FACET_DISTRIBUTION_NONE)
-        has = has && expected(FACET_KIND_MASKING, value[2]) && expected(FACET_KIND_FRESNEL, value[3]);
+    if (value[1] != FACET_DISTRIBUTION_NONE) has = has && expected(FACET_KIND_FRESNEL, value[3]);
+    if (value[1] != FACET_DISTRIBUTION_NONE && !is_lobe(value[1]))
+        has = has && expected(FACET_KIND_MASKING, value[2]) && go_together(value[2], value[1]);
 
     facet_plan plan;
     facet_status status = facet_plan_init(&plan, &material, target, NULL);

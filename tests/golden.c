@@ -41,6 +41,14 @@ static int64_t between(test_random *r, int64_t least, int64_t most)
     return least + (int64_t)(random_u64(r) % (uint64_t)(most - least + 1));
 }
 
+static fixed cross(fixed a, fixed b)
+{
+    fixed x;
+    for (int c = 0; c < 3; c++)
+        x.c[c] = (a.c[(c + 1) % 3] * b.c[(c + 2) % 3] - a.c[(c + 2) % 3] * b.c[(c + 1) % 3]) / UNIT;
+    return x;
+}
+
 static fixed any_direction(test_random *r)
 {
     fixed a;
@@ -84,7 +92,7 @@ static void store(float *to, fixed a)
     for (int c = 0; c < 3; c++) to[c] = (float)a.c[c] * 0x1p-23f;
 }
 
-/* m 2^-e, exactly. */
+/* m 2^-e, exactly; m of at most 24 bits. */
 static float scaled(int64_t m, int64_t e)
 {
     float x = (float)m;
@@ -102,29 +110,50 @@ static void edge(test_random *r, float *x)
     *x = from_bits(bits[random_u64(r) % (sizeof bits / sizeof bits[0])]);
 }
 
+/* In [1/2, 1], halved or doubled up to so often. */
+static float in_binades(test_random *r, int64_t halvings, int64_t doublings)
+{
+    const int64_t binade = between(r, -doublings, halvings);
+    return scaled(between(r, UNIT / 2, UNIT), 23 + binade);
+}
+
+/* Up to 7; one in four near 1. */
+static float any_eta(test_random *r)
+{
+    const int64_t span = UNIT >> between(r, 8, 23);
+    if (between(r, 0, 3) == 0) return scaled(UNIT + between(r, -span, span), 23);
+    return scaled(between(r, 1 << 16, 7 << 20), 20);
+}
+
 sample golden_sample(test_random *r, bool edges)
 {
-    sample s;
+    sample s = { .light = NULL };
     const fixed n = any_direction(r), v = above(n, any_direction(r)), l = light_direction(r, n, v);
-    const int64_t binade = between(r, 0, 14);
     store(s.n, n);
     store(s.v, between(r, 0, 15) ? v : any_direction(r));
     store(s.l, l);
+    store(s.tangent, unit(cross(n, any_direction(r))));
     s.sigma = scaled(between(r, 0, 0xc90fdb), 23);               /* up to pi/2 */
-    s.alpha = scaled(between(r, UNIT / 2, UNIT), 23 + binade);
+    s.alpha = in_binades(r, 14, 0);
+    s.alpha_y = in_binades(r, 14, 0);
+    s.exponent = in_binades(r, -1, 13);
     for (int c = 0; c < 3; c++) {
+        s.position[c] = scaled(between(r, -(4 << 20), 4 << 20), 20);
         s.albedo[c] = scaled(between(r, 0, UNIT), 23);
         s.f0[c] = scaled(between(r, 0, UNIT), 23);
+        s.eta[c] = any_eta(r);
+        s.k[c] = between(r, 0, 3) ? scaled(between(r, 0, 8 << 20), 20) : 0;
         s.irradiance[c] = scaled(between(r, 0, UNIT), 20);
     }
-    enum { FLOATS = sizeof s / sizeof(float) };
+    enum { FLOATS = (offsetof(sample, irradiance) + sizeof s.irradiance) / sizeof(float) };
     if (edges && between(r, 0, 3) == 0) edge(r, (float *)&s + random_u64(r) % FLOATS);
     return s;
 }
 
 /* ---- Hashes ------------------------------------------------------------------------------------------------------ */
 
-enum { COUNT = 1021, MATERIALS = 300, MATERIAL_SAMPLES = 5 };
+/* MATERIALS: of every kernel. */
+enum { COUNT = 1021, MATERIALS = 20, MATERIAL_SAMPLES = 5 };
 
 #define HASH_START UINT64_C(0xcbf29ce484222325)
 
@@ -157,6 +186,10 @@ static sample_batch golden_batch(uint64_t seed, int count, bool edges)
     if (!samples) abort();
     for (int i = 0; i < count; i++) samples[i] = golden_sample(&r, edges);
     sample_batch b = batch_of(samples, count);
+    for (int c = 0; c < 3; c++) b.batch.base[c] = b.batch.albedo[c];
+    b.batch.metallic = b.batch.f0[0];
+    b.batch.specular_level = b.batch.f0[1];
+    b.batch.roughness = b.batch.glossiness = b.batch.alpha;
     free(samples);
     return b;
 }
@@ -171,10 +204,12 @@ static void shade(const facet_material *m, facet_arch arch, const facet_batch *b
 }
 
 /* One light for all samples, nothing added, no edge values: what a kernel may have a short way for. */
-static uint64_t hash_plain(uint64_t hash, const facet_material *m, facet_arch arch)
+static uint64_t hash_plain(uint64_t hash, const kernel_case *k, const facet_material *m, facet_arch arch)
 {
     sample_batch b = golden_batch(6, COUNT, false);
-    const facet_light light = { .direction = { 0.6f, -0.48f, 0.64f }, .irradiance = { 0.5f, 1, 2 } };
+    facet_light light = { .direction = { 0.6f, -0.48f, 0.64f } };
+    if (k->light.kind != FACET_LIGHT_DIRECTIONAL) light = k->light;
+    for (int c = 0; c < 3; c++) light.irradiance[c] = 0.5f * (float)(1 << c);
     b.batch.lights = &light;
     shade(m, arch, &b.batch);
     hash = hash_radiance(hash, &b.batch);
@@ -182,20 +217,29 @@ static uint64_t hash_plain(uint64_t hash, const facet_material *m, facet_arch ar
     return hash;
 }
 
-/* Three lights, everything added and edge values; then two-sided, added to that. */
+/* A light of every kind and source, everything added and edge values; then two-sided, added to that. */
 static uint64_t hash_rich(uint64_t hash, facet_material m, facet_arch arch)
 {
+    static const facet_light spot = { .kind = FACET_LIGHT_SPOT, .position = { 0.5f, 3, -2 }, .axis = { 0, -0.8f, 0.6f },
+                                      .cos_inner = 0.875f, .cos_outer = -0.25f };
+    static const facet_light point = { .kind = FACET_LIGHT_POINT, .irradiance = { 5, 3, 2 }, .position = { -1, 0, 2 },
+                                       .range = 4.5f };
+    static const float sh[4][3] = { { 1, 0.5f, 0.25f }, { 1, -1, 0.5f }, { -0.5f, 1, 1 }, { 0.25f, -0.75f, -1 } };
     sample_batch b = golden_batch(1, COUNT, true);
-    facet_light lights[3] = { b.batch.lights[0], b.batch.lights[0], { .direction = { 0.6f, -0.48f, 0.64f } } };
-    lights[0].visibility = b.batch.alpha;
+    const facet_light samples = b.batch.lights[0];
+    facet_light lights[5] = { samples, spot, samples, { .direction = { 0.6f, -0.48f, 0.64f } }, point };
+    lights[0].visibility = lights[4].visibility = b.batch.alpha;
     for (int c = 0; c < 3; c++) {
-        lights[1].direction_of[c] = b.batch.normal[c];
-        lights[2].irradiance[c] = 0.7f;
+        lights[1].irradiance_of[c] = samples.irradiance_of[c];
+        lights[2].direction_of[c] = b.batch.normal[c];
+        lights[3].irradiance[c] = 0.7f;
         m.emission[c] = 0.01f;
         b.batch.ambient[c] = 0.1f;
     }
+    memcpy(b.batch.sh, sh, sizeof sh);
+    b.batch.occlusion = b.batch.f0[2];
     b.batch.lights = lights;
-    b.batch.light_count = 3;
+    b.batch.light_count = 5;
     shade(&m, arch, &b.batch);
     hash = hash_radiance(hash, &b.batch);
     b.batch.flags = FACET_ACCUMULATE | FACET_TWO_SIDED;
@@ -206,35 +250,78 @@ static uint64_t hash_rich(uint64_t hash, facet_material m, facet_arch arch)
     return hash;
 }
 
+/* Parameters that follow from others, per sample: from another convention's, eta from f0, f0 from eta and k, alpha_y
+ * from alpha. */
+static uint64_t hash_derived(uint64_t hash, facet_material m, facet_arch arch)
+{
+    const uint32_t promised = m.streams, index = FACET_STREAM_ETA | FACET_STREAM_K;
+    const bool dielectric = m.fresnel.model == FACET_FRESNEL_DIELECTRIC;
+    sample_batch b = golden_batch(7, COUNT, true);
+    m.convention.model = FACET_CONVENTION_METALLIC_ROUGHNESS;
+    m.streams |= FACET_STREAM_BASE | FACET_STREAM_METALLIC | FACET_STREAM_ROUGHNESS | FACET_STREAM_SPECULAR_LEVEL;
+    if (dielectric) m.streams &= ~index;
+    shade(&m, arch, &b.batch);
+    hash = hash_radiance(hash, &b.batch);
+    m.convention.model = FACET_CONVENTION_SPECULAR_GLOSSINESS;
+    m.streams = (promised & ~(uint32_t)FACET_STREAM_ALPHA_Y) | FACET_STREAM_GLOSSINESS;
+    if (promised & FACET_STREAM_F0) m.streams ^= FACET_STREAM_F0 | index;
+    if (dielectric) m.streams ^= FACET_STREAM_F0 | FACET_STREAM_ETA;
+    shade(&m, arch, &b.batch);
+    hash = hash_radiance(hash, &b.batch);
+    free_batch(&b);
+    return hash;
+}
+
 /* Every parameter per sample. */
 static uint64_t hash_case(const kernel_case *k, facet_arch arch)
 {
     facet_material m = k->material;
-    m.streams = k->streams;
-    return hash_rich(hash_plain(HASH_START, &m, arch), m, arch);
+    m.streams = k->promised;
+    uint64_t hash = hash_plain(HASH_START, k, &m, arch);
+    hash = hash_rich(hash, m, arch);
+    return hash_derived(hash, m, arch);
 }
 
-/* Many materials of numbers: what facet_plan_init computes, as it shows in the radiance of a few samples. */
+/* A material of numbers alone; some are left to their defaults, or to what follows from others. */
+static facet_material golden_material(const kernel_case *k, test_random *r)
+{
+    const sample s = golden_sample(r, false), t = golden_sample(r, false);
+    const uint64_t bits = random_u64(r);
+    const bool has_eta = k->material.fresnel.model == FACET_FRESNEL_CONDUCTOR || bits & 8;
+    facet_material m = k->material;
+    m.diffuse.sigma = s.sigma > k->sigma_max ? k->sigma_max : s.sigma;
+    m.specular.alpha = s.alpha;
+    m.specular.alpha_y = bits & 1 ? s.alpha_y : 0;
+    m.specular.exponent = s.exponent;
+    m.specular.scale = bits & 2 ? t.irradiance[0] : 0;
+    m.fresnel.f90 = t.albedo[0];
+    m.fresnel.eta_outside = bits & 4 ? t.eta[0] : 0;
+    m.fresnel.polarisation = scaled(between(r, -UNIT, UNIT), 23);
+    m.convention.model = (facet_convention)((bits >> 8) % 3);
+    m.convention.metallic = t.f0[0];
+    m.convention.roughness = t.f0[1];
+    m.convention.specular_level = bits & 16 ? t.f0[2] : 0;
+    m.convention.glossiness = t.albedo[2];
+    for (int c = 0; c < 3; c++) {
+        m.diffuse.albedo[c] = s.albedo[c];
+        m.fresnel.f0[c] = has_eta && bits & 32 ? 0 : s.f0[c];
+        m.fresnel.f82[c] = has_eta && bits & 64 ? 0 : t.f0[c];
+        m.fresnel.eta[c] = has_eta ? s.eta[c] : 0;
+        m.fresnel.k[c] = s.k[c];
+        m.convention.base[c] = t.albedo[c];
+        m.emission[c] = t.albedo[c];
+    }
+    return m;
+}
+
+/* What facet_plan_init computes, as it shows in the radiance of a few samples. */
 static uint64_t hash_plans(facet_arch arch)
 {
     uint64_t hash = HASH_START;
     test_random r = { 2 };
     sample_batch b = golden_batch(3, MATERIAL_SAMPLES, false);
-    for (int i = 0; i < MATERIALS; i++) {
-        const kernel_case *k = case_at(i % case_count());
-        const sample s = golden_sample(&r, false), t = golden_sample(&r, false);
-        facet_material m = k->material;
-        m.diffuse.sigma = s.sigma > k->sigma_max ? k->sigma_max : s.sigma;
-        m.specular.alpha = s.alpha;
-        m.fresnel.f90 = t.albedo[0];
-        m.fresnel.eta_outside = 1 + t.albedo[1];
-        for (int c = 0; c < 3; c++) {
-            m.diffuse.albedo[c] = s.albedo[c];
-            m.fresnel.f0[c] = i & 16 ? s.f0[c] : 0;
-            m.fresnel.eta[c] = 0.5f + t.irradiance[c];
-            m.fresnel.k[c] = t.f0[c];
-            m.emission[c] = t.albedo[c];
-        }
+    for (int i = 0; i < MATERIALS * case_count(); i++) {
+        const facet_material m = golden_material(case_at(i % case_count()), &r);
         shade(&m, arch, &b.batch);
         hash = hash_radiance(hash, &b.batch);
     }

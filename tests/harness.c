@@ -67,9 +67,11 @@ double random_unit(test_random *r)
 }
 
 static const struct { const char *name; void (*run)(void); } suites[] = {
-    { "ops", suite_ops },             { "api", suite_api },             { "encode", suite_encode },
-    { "accuracy", suite_accuracy },   { "stability", suite_stability }, { "physics", suite_physics },
-    { "agreement", suite_agreement }, { "golden", suite_golden },       { "environment", suite_environment },
+    { "ops", suite_ops },                  { "elementary", suite_elementary },
+    { "api", suite_api },                  { "encode", suite_encode },
+    { "conversions", suite_conversions },  { "metals", suite_metals },        { "truths", suite_truths },
+    { "accuracy", suite_accuracy },        { "stability", suite_stability },  { "physics", suite_physics },
+    { "agreement", suite_agreement },      { "golden", suite_golden },        { "environment", suite_environment },
 };
 
 static bool run_suite(const char *name)

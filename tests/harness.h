@@ -27,8 +27,12 @@ double random_unit(test_random *);               /* [0, 1) */
 
 /* The suites, in the order they run (main in harness.c has the table). */
 void suite_ops(void);
+void suite_elementary(void);
 void suite_api(void);
 void suite_encode(void);
+void suite_conversions(void);
+void suite_metals(void);
+void suite_truths(void);
 void suite_accuracy(void);
 void suite_stability(void);
 void suite_physics(void);

@@ -33,6 +33,8 @@ OP vf from_bits(uint32_t bits) { return (vf)(lanes_of_bits){ (int32_t)bits }; }
 OP vf vf_bits_max(vf a, vf b) { return bits_of(a) > bits_of(b) ? a : b; }
 OP vf vf_bits_minus(vf a, vf b) { return from_bits(bits_of(a) - bits_of(b)); }
 OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
+OP vf vf_shift_left(vf a, int n) { return from_bits(bits_of(a) << n); }
+OP vf vf_shift_right(vf a, int n) { return from_bits(bits_of(a) >> n); }
 OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # sh tests/ops.sh BUILD: compares the vector layers with tests/ops.def. Every header defines every operation of the list
 # and no other vf_ or vm_ function; what it has besides is its own, and the library does not use it. So an operation
-# without a test is not possible.
+# without a test is not possible; nor is a function of src/elementary.tmpl.h that tests/elementary.c does not measure.
 cd "$(dirname "$0")/.." || exit 1
 build=${1:-build} suite=ops
 . tests/report.sh
@@ -42,10 +42,18 @@ uses_listed() {
     none "a header's own" "$(defined arch/*.h tests/lint.h | comm -23 - "$listed" | comm -12 - "$found")"
 }
 
+measures_all() {
+    sed -nE 's/^ *(ONE|TWO)\(([a-z0-9_]*),.*/\2/p' tests/elementary.h | sort >"$listed"
+    defined src/elementary.tmpl.h | grep -vx -e splat -e square >"$found"
+    none "- not in src/elementary.tmpl.h, + not in tests/elementary.h" "$(differences)"
+    [ -s "$listed" ]
+}
+
 sed -nE 's/^(OPERATION|MOVE|FUSABLE)\((v[fm]_[a-z0-9_]*),.*/\2/p' tests/ops.def | sort >"$listed"
 check "tests/ops.def lists every operation once" listed_once
 for header in arch/*.h tests/lint.h; do
     [ "$header" = arch/environment.h ] || check "$header defines the operations of tests/ops.def" defines_all "$header"
 done
 check "src uses operations of tests/ops.def alone" uses_listed
+check "tests/elementary.h lists every function of src/elementary.tmpl.h" measures_all
 [ $failures = 0 ]

@@ -28,6 +28,13 @@ OP void store_splats(float *out, const float *a)
     }
 }
 
+/* A case for every constant that a shift can have. */
+#define SHIFT(name, n)   case n: vf_store(all, name(A, n)); break;
+#define SHIFT_4(name, n) SHIFT(name, n) SHIFT(name, n + 1) SHIFT(name, n + 2) SHIFT(name, n + 3)
+#define SHIFTS(name)                                                                                                  \
+    SHIFT_4(name, 0) SHIFT_4(name, 4) SHIFT_4(name, 8) SHIFT_4(name, 12)                                              \
+    SHIFT_4(name, 16) SHIFT_4(name, 20) SHIFT_4(name, 24) SHIFT_4(name, 28)
+
 /* One vector of an operation, by shape. */
 #define APPLY_UNARY(name)   vf_store(out + i, name(A))
 #define APPLY_BINARY(name)  vf_store(out + i, name(A, B))
@@ -37,6 +44,14 @@ OP void store_splats(float *out, const float *a)
 #define APPLY_SIGNS(name)   store_bits(out + i, name(A))
 #define APPLY_SELECT(name)  vf_store(out + i, name(MASK(A), B, C))
 #define APPLY_WHERE(name)   vf_store(out + i, name(MASK(A), B))
+#define APPLY_SHIFT(name)                                                                                             \
+    for (int lane = 0; lane < VF_LANES; lane++) {                                                                     \
+        float all[VF_LANES];                                                                                          \
+        uint32_t n;                                                                                                   \
+        __builtin_memcpy(&n, b + i + lane, sizeof n);                                                                 \
+        switch (n & 31) { SHIFTS(name) }                                                                              \
+        __builtin_memcpy(out + i + lane, &all[lane], sizeof(float));                                                  \
+    }
 #define APPLY_SPLAT(name)   store_splats(out + i, a + i)
 #define APPLY_LOAD(name)    vf_store(out + i, name(a + i))
 #define APPLY_STORE(name)   name(out + i, A)

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_PLACES = MOST_FACTORS * MOST_LEVELS, UNSEEN = 0, SEEN, EXCLUDED };
+enum { UNSEEN = 0, SEEN, EXCLUDED };
 
-/* A level of a factor has a place; `met` tells of two places. */
+/* A level of a factor has a place, from first[factor] on; `met` tells of two places. */
 typedef struct {
     const factor_space *space;
     int first[MOST_FACTORS + 1];
@@ -15,30 +15,33 @@ typedef struct {
     test_random random;
 } designer;
 
-typedef struct { uint64_t allowed[MOST_FACTORS]; } constraint;
+typedef struct { level_set allowed[MOST_FACTORS]; } constraint;
 
 static unsigned char *meeting(designer *d, int f, int level_f, int g, int level_g)
 {
-    const int a = d->first[f] + level_f, b = d->first[g] + level_g;
-    return a < b ? &d->met[(size_t)a * MOST_PLACES + (size_t)b] : &d->met[(size_t)b * MOST_PLACES + (size_t)a];
+    const size_t a = (size_t)(d->first[f] + level_f), b = (size_t)(d->first[g] + level_g);
+    const size_t places = (size_t)d->first[d->space->factors];
+    return a < b ? &d->met[a * places + b] : &d->met[b * places + a];
 }
 
 /* The constraint with one more level chosen. False where nothing is left of some factor that counts: a level that asks
  * for it cannot be had. */
 static bool choose(const designer *d, constraint *c, int factor, int level)
 {
-    if (!(c->allowed[factor] >> level & 1)) return false;
-    c->allowed[factor] = (uint64_t)1 << level;
+    if (!has_level(&c->allowed[factor], level)) return false;
+    c->allowed[factor] = (level_set){ { 0 } };
+    add_level(&c->allowed[factor], level);
     d->space->require(factor, level, c->allowed);
     for (int f = 0; f < d->space->factors; f++)
-        if (!c->allowed[f]) return false;
+        if (no_levels(&c->allowed[f])) return false;
     return true;
 }
 
 static constraint anything(const designer *d)
 {
-    constraint c;
-    for (int f = 0; f < d->space->factors; f++) c.allowed[f] = UINT64_MAX >> (64 - d->space->levels[f]);
+    constraint c = { 0 };
+    for (int f = 0; f < d->space->factors; f++)
+        for (int level = 0; level < d->space->levels[f]; level++) add_level(&c.allowed[f], level);
     return c;
 }
 
@@ -106,10 +109,12 @@ static void meet(designer *d, int f, int level_f, int g, int level_g, design_set
 
 design_set design_pairs(const factor_space *space, uint64_t seed)
 {
-    designer d = { .space = space, .met = calloc(MOST_PLACES, MOST_PLACES), .random = { seed } };
+    designer d = { .space = space, .random = { seed } };
     design_set set = { NULL, 0, 0, 0 };
-    if (!d.met) abort();
     for (int f = 0; f < space->factors; f++) d.first[f + 1] = d.first[f] + space->levels[f];
+    const size_t places = (size_t)d.first[space->factors];
+    d.met = calloc(places, places);
+    if (!d.met) abort();
     for (int f = 0; f < space->factors; f++)
         for (int g = 0; g < f; g++)
             for (int i = 0; i < space->levels[f]; i++)

@@ -1,6 +1,7 @@
 /* readme-tables README [ARCH=FLAGS ...]: prints README with its tables made anew from models.def, streams.def and
  * arches.def. A table stands between the lines <!-- NAME --> and <!-- /NAME -->. FLAGS: the architecture's, of the
  * compiler. */
+#include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,33 +9,59 @@
 static char **flags;
 static int flag_count;
 
-static void model(const char *word, const char *enumerator, const char *kind, const char *title, const char *parameters)
+/* The next item of a cell, in small letters, after the `items` that are there. */
+static void put_item(const char *item, size_t length, int *items)
 {
-    printf("| `%s` | `%s` | %s | %s | %s |\n", word, enumerator, kind, title, parameters);
+    printf("%s`", (*items)++ ? ", " : "");
+    for (size_t i = 0; i < length; i++) putchar(tolower(item[i]));
+    putchar('`');
 }
 
-static const char *diffuse_parameters(const char *word, const char *sigma_max)
+/* "FACET_STREAM_ALPHA | FACET_STREAM_ALPHA_Y" as alpha, alpha_y; "0" as nothing. */
+static void put_streams(const char *reads, int *items)
 {
-    if (!strcmp(word, "none")) return "";
-    return strcmp(sigma_max, "0.0f") ? "`albedo`, `sigma`" : "`albedo`";
+    static const char prefix[] = "FACET_STREAM_";
+    for (const char *at = reads; (at = strstr(at, prefix));) {
+        at += strlen(prefix);
+        put_item(at, strcspn(at, " |"), items);
+    }
 }
 
-static const char *fresnel_parameters(const char *properties)
+/* The numbers beside streams that a property of models.def stands for. */
+static const struct { const char *property, *numbers[2]; } takes[] = {
+    { "F90", { "f90" } }, { "F82", { "f82" } }, { "MEDIA", { "eta_outside", "polarisation" } },
+};
+
+static bool has_word(const char *words, const char *word)
 {
-    if (!strstr(properties, "F0")) return "";
-    return strstr(properties, "F90") ? "`f0` or `eta` and `k`, `f90`" : "`f0` or `eta` and `k`";
+    const size_t length = strlen(word);
+    for (; *words; words += strcspn(words, " |"), words += strspn(words, " |"))
+        if (strcspn(words, " |") == length && !strncmp(words, word, length)) return true;
+    return false;
+}
+
+static void model(const char *word, const char *enumerator, const char *kind, const char *title, const char *reads,
+                  const char *properties)
+{
+    int items = 0;
+    printf("| `%s` | `%s` | %s | %s | ", word, enumerator, kind, title);
+    put_streams(reads, &items);
+    for (size_t i = 0; i < sizeof takes / sizeof takes[0]; i++)
+        for (int k = 0; k < 2 && takes[i].numbers[k] && has_word(properties, takes[i].property); k++)
+            put_item(takes[i].numbers[k], strlen(takes[i].numbers[k]), &items);
+    printf(" |\n");
 }
 
 static void models(void)
 {
     printf("| word | enumerator | kind | model | parameters |\n|---|---|---|---|---|\n");
-#define FACET_DIFFUSE(id, name, word, sigma_max, properties, title)                                                   \
-    model(word, "FACET_DIFFUSE_" #id, "diffuse", title, diffuse_parameters(word, #sigma_max));
-#define FACET_DISTRIBUTION(id, name, word, properties, title)                                                         \
-    model(word, "FACET_DISTRIBUTION_" #id, "distribution", title, strcmp(word, "none") ? "`alpha`" : "");
-#define FACET_MASKING(id, name, word, title) model(word, "FACET_MASKING_" #id, "masking", title, "");
-#define FACET_FRESNEL(id, name, word, properties, title)                                                              \
-    model(word, "FACET_FRESNEL_" #id, "Fresnel", title, fresnel_parameters(#properties));
+#define FACET_DIFFUSE(id, name, word, reads, properties, sigma_max, title)                                            \
+    model(word, "FACET_DIFFUSE_" #id, "diffuse", title, #reads, #properties);
+#define FACET_DISTRIBUTION(id, name, word, reads, properties, title)                                                  \
+    model(word, "FACET_DISTRIBUTION_" #id, "distribution", title, #reads, #properties);
+#define FACET_MASKING(id, name, word, title) model(word, "FACET_MASKING_" #id, "masking", title, "0", "0");
+#define FACET_FRESNEL(id, name, word, reads, properties, title)                                                       \
+    model(word, "FACET_FRESNEL_" #id, "Fresnel", title, #reads, #properties);
 #include "../src/models.def"
 }
 
@@ -46,14 +73,28 @@ static void streams(void)
 #include "../src/streams.def"
 }
 
+/* Features of a CPU as their makers write them, where that is not the bit's name. */
+static const struct { const char *bit, *words; } features[] = {
+    { "CPU_SSE41", "SSE4.1" }, { "CPU_AVX512", "AVX-512 F, VL, DQ, BW" },
+};
+
+static void put_feature(const char *bit, size_t length)
+{
+    for (size_t i = 0; i < sizeof features / sizeof features[0]; i++)
+        if (strlen(features[i].bit) == length && !strncmp(features[i].bit, bit, length)) {
+            printf("%s", features[i].words);
+            return;
+        }
+    printf("%.*s", (int)length - 4, bit + 4);
+}
+
 /* "CPU_AVX2 | CPU_FMA" as "AVX2, FMA"; "0" as "any". */
 static void put_needs(const char *needs)
 {
     if (!strcmp(needs, "0")) printf("any");
-    while (*needs && strcmp(needs, "0")) {
-        if (!strncmp(needs, "CPU_", 4)) needs += 4;
-        else if (!strncmp(needs, " | ", 3)) needs += 3, printf(", ");
-        else putchar(*needs++);
+    for (const char *at = needs; (at = strstr(at, "CPU_")); at += strcspn(at, " |")) {
+        if (at > needs) printf(", ");
+        put_feature(at, strcspn(at, " |"));
     }
 }
 

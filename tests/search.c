@@ -21,11 +21,10 @@ typedef struct {
 
 /* ---- Measuring --------------------------------------------------------------------------------------------------- */
 
-kernel_set kernels_of(const kernel_case *kernel, facet_tier tier, float f90, bool best_alone)
+kernel_set kernels_of(const kernel_case *kernel, facet_tier tier, bool best_alone)
 {
     kernel_set set = { .material = kernel->material };
-    set.material.streams = kernel->streams;
-    set.material.fresnel.f90 = f90;
+    set.material.streams = kernel->promised;
     for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
         if (!facet_has(FACET_KIND_ARCH, arch) || (best_alone && arch != (int)facet_arch_best())) continue;
         const facet_target target = { (facet_arch)arch, tier };
@@ -62,11 +61,7 @@ void measure(const kernel_set *set, const sample *samples, int count, measuremen
 static witness witness_of(const sample *s, const measurement *m, double reached)
 {
     witness w = { *s, m->arch, m->got, m->want, reached };
-    for (int c = 0; c < 3; c++) {
-        w.s.albedo[c] = s->albedo[m->channel];
-        w.s.f0[c] = s->f0[m->channel];
-        w.s.irradiance[c] = s->irradiance[m->channel];
-    }
+    make_grey(&w.s, m->channel);
     return w;
 }
 
@@ -97,7 +92,7 @@ static void try_samples(search *h, const sample *samples, int count, const int *
         witness *slots = h->slots[goal];
         offer(own ? &slots[own[i]] : least_of(slots), &samples[i], &results[i], results[i].error / bound);
         slots = h->slots[GOAL_PLAIN];
-        if (in_plain_domain(&samples[i], c))
+        if (in_plain_domain(h->bound, &samples[i], c))
             offer(own ? &slots[own[i]] : least_of(slots), &samples[i], &results[i], results[i].error / plain);
     }
 }
@@ -132,18 +127,48 @@ static void move_vector(test_random *r, float *vector)
     store_unit(vector, moved);
 }
 
+/* Takes from the tangent what it has along the normal. */
+static void lay_tangent(sample *s)
+{
+    double laid[3], along = 0;
+    for (int c = 0; c < 3; c++) along += (double)s->n[c] * s->tangent[c];
+    for (int c = 0; c < 3; c++) laid[c] = s->tangent[c] - along * s->n[c];
+    store_unit(s->tangent, laid);
+}
+
+/* To another distance, or by a step. */
+static void move_position(test_random *r, sample *s)
+{
+    const float *light = s->light->position;
+    const double scale = exp(signed_log(r, 1e-7, 1)), step = random_u64(r) & 1 ? signed_log(r, 1e-8, 0.3) : 0;
+    for (int c = 0; c < 3; c++)
+        s->position[c] = (float)(light[c] + (s->position[c] - light[c]) * scale + step * (2 * random_unit(r) - 1));
+}
+
+static void turn(double angle, int x, const double *from, double *to)
+{
+    const int y = (x + 1) % 3, z = (x + 2) % 3;
+    to[x] = cos(angle) * from[x] - sin(angle) * from[y];
+    to[y] = sin(angle) * from[x] + cos(angle) * from[y];
+    to[z] = from[z];
+}
+
 /* The same geometry in another frame: other roundings. */
 static void turn_all(test_random *r, sample *s)
 {
     const double angle = signed_log(r, 1e-7, PI);
-    const int x = (int)(random_u64(r) % 3), y = (x + 1) % 3;
-    float *const vectors[] = { s->n, s->v, s->l };
-    for (int i = 0; i < 3; i++) {
-        double turned[3] = { vectors[i][0], vectors[i][1], vectors[i][2] };
-        turned[x] = cos(angle) * vectors[i][x] - sin(angle) * vectors[i][y];
-        turned[y] = sin(angle) * vectors[i][x] + cos(angle) * vectors[i][y];
+    const int x = (int)(random_u64(r) % 3);
+    float *const vectors[] = { s->n, s->v, s->tangent, s->l };
+    double turned[3];
+    for (int i = 0; i < 4; i++) {
+        turn(angle, x, (double[]){ vectors[i][0], vectors[i][1], vectors[i][2] }, turned);
         store_unit(vectors[i], turned);
     }
+    if (!s->light) return;
+    double from[3];
+    for (int c = 0; c < 3; c++) from[c] = (double)s->position[c] - s->light->position[c];
+    turn(angle, x, from, turned);
+    for (int c = 0; c < 3; c++) s->position[c] = (float)(s->light->position[c] + turned[c]);
 }
 
 static float mutate_number(test_random *r, float x, float least, float most)
@@ -152,27 +177,68 @@ static float mutate_number(test_random *r, float x, float least, float most)
     return fminf(fmaxf(mutant, least), most);
 }
 
+/* Also to where it is special: the medium's own, no extinction. */
+static void mutate_index(test_random *r, sample *s)
+{
+    for (int c = 0; c < 3; c++) {
+        s->eta[c] = mutate_number(r, s->eta[c], FACET_ETA_FLOOR, FACET_ETA_CAP);
+        s->k[c] = mutate_number(r, s->k[c], 0, FACET_ETA_CAP);
+        if (random_u64(r) % 16 == 0) s->k[c] = (float)random_unit(r);
+        if (random_u64(r) % 16 == 0) s->k[c] = 0;
+        if (random_u64(r) % 16 == 0) s->eta[c] = (float)(1 + signed_log(r, 1e-7, 0.5));
+    }
+}
+
+static void mutate_colours(test_random *r, sample *s)
+{
+    for (int c = 0; c < 3; c++) {
+        s->albedo[c] = mutate_number(r, s->albedo[c], 0, 1);
+        s->f0[c] = mutate_number(r, s->f0[c], 0, 1);
+        s->irradiance[c] = mutate_number(r, s->irradiance[c], 0, 1e6f);
+    }
+}
+
+/* What a mutation changes, and which kernels it concerns: those that read the stream, or all. */
+enum { NUDGED, MOVED, TURNED, COLOURED, WIDER, WIDER_ACROSS, SHARPER, ROUGHER, OF_INDEX, TWISTED, MUTATIONS };
+
+static const uint32_t reads[MUTATIONS] = {
+    [WIDER] = FACET_STREAM_ALPHA, [WIDER_ACROSS] = FACET_STREAM_ALPHA_Y, [SHARPER] = FACET_STREAM_EXPONENT,
+    [ROUGHER] = FACET_STREAM_SIGMA, [OF_INDEX] = FACET_STREAM_ETA, [TWISTED] = FACET_STREAM_TANGENT,
+};
+
+static int any_mutation(test_random *r, const kernel_case *kernel)
+{
+    for (;;) {
+        const uint64_t die = random_u64(r) % (MUTATIONS + 4);
+        const int mutation = die < MUTATIONS ? (int)die : die < MUTATIONS + 2 ? NUDGED : die & 1 ? MOVED : TURNED;
+        if (!reads[mutation] || kernel->streams & reads[mutation]) return mutation;
+    }
+}
+
 static sample mutate(test_random *r, const kernel_case *kernel, sample s)
 {
-    float *const vectors[] = { s.n, s.v, s.l };
-    float *const vector = vectors[random_u64(r) % 3];
-    switch (random_u64(r) % 10) {
-    case 0: case 1: case 2: {
-        const uint64_t component = random_u64(r) % 3;
-        vector[component] = nudge(r, vector[component]);
+    float *const vectors[] = { s.n, s.v, s.light ? s.position : s.l };
+    const uint64_t which = random_u64(r) % 3, component = random_u64(r) % 3;
+    switch (any_mutation(r, kernel)) {
+    case NUDGED: vectors[which][component] = nudge(r, vectors[which][component]); break;
+    case MOVED:
+        if (which == 2 && s.light) move_position(r, &s);
+        else move_vector(r, vectors[which]);
+        if (which == 0) lay_tangent(&s);
         break;
+    case TURNED: turn_all(r, &s); break;
+    case COLOURED: mutate_colours(r, &s); break;
+    case WIDER: s.alpha = mutate_number(r, s.alpha, FACET_ALPHA_FLOOR, 1); break;
+    case WIDER_ACROSS: s.alpha_y = mutate_number(r, s.alpha_y, FACET_ALPHA_FLOOR, 1); break;
+    case SHARPER: s.exponent = mutate_number(r, s.exponent, FACET_EXPONENT_MIN, FACET_EXPONENT_MAX); break;
+    case ROUGHER: s.sigma = mutate_number(r, s.sigma, 0, kernel->sigma_max); break;
+    case OF_INDEX: mutate_index(r, &s); break;
+    case TWISTED:
+        if (random_u64(r) & 1) move_vector(r, s.tangent);
+        else s.tangent[component] = nudge(r, s.tangent[component]);
+        lay_tangent(&s);
     }
-    case 3: case 4: move_vector(r, vector); break;
-    case 5: case 6: turn_all(r, &s); break;
-    case 7: s.alpha = mutate_number(r, s.alpha, FACET_ALPHA_FLOOR, 1); break;
-    case 8: s.sigma = mutate_number(r, s.sigma, 0, kernel->sigma_max); break;
-    case 9:
-        for (int c = 0; c < 3; c++) {
-            s.albedo[c] = mutate_number(r, s.albedo[c], 0, 1);
-            s.f0[c] = mutate_number(r, s.f0[c], 0, 1);
-            s.irradiance[c] = mutate_number(r, s.irradiance[c], 0, 1e6f);
-        }
-    }
+    if (s.light) aim_sample(&s);
     return s;
 }
 
@@ -197,7 +263,7 @@ static void try_random(search *h, int batch)
 {
     sample samples[BATCH];
     for (int i = 0; i < BATCH; i++)
-        samples[i] = random_sample(&h->random, (batch + i) % SAMPLES_KINDS, FACET_ALPHA_FLOOR, h->kernel->sigma_max);
+        samples[i] = random_sample_of(h->kernel, &h->random, (batch + i) % SAMPLES_KINDS, FACET_ALPHA_FLOOR);
     try_samples(h, samples, BATCH, NULL);
 }
 
@@ -212,15 +278,21 @@ static sample lattice_sample(int index, double nl, double nv, const kernel_case 
     static const float across[][2] = { { 1, 0 }, { -1, 0 }, { 0, 1 } };
     const float *azimuth = across[index % 3];
     const double sin_l = sqrt(fmax(0, 1 - nl * nl)), sin_v = sqrt(fmax(0, 1 - nv * nv));
-    sample s = { .n = { 0, 0, 1 }, .v = { (float)sin_v, 0, (float)nv } };
+    sample s = { .n = { 0, 0, 1 }, .v = { (float)sin_v, 0, (float)nv }, .tangent = { 0.6f, 0.8f, 0 } };
     s.l[0] = (float)(sin_l * azimuth[0]), s.l[1] = (float)(sin_l * azimuth[1]), s.l[2] = (float)nl;
+    if (index & 1) s.tangent[0] = 1, s.tangent[1] = 0;
     s.alpha = edge_within(index, FACET_ALPHA_FLOOR, 1);
+    s.alpha_y = edge_within(index / 7, FACET_ALPHA_FLOOR, 1);
+    s.exponent = edge_within(index, FACET_EXPONENT_MIN, FACET_EXPONENT_MAX);
     s.sigma = edge_within(index / 2, 0, kernel->sigma_max);
     for (int c = 0; c < 3; c++) {
         s.albedo[c] = edge_within(index + 5 * c, 0, 1);
         s.f0[c] = edge_within(index / 3 + 7 * c, 0, 1);
+        s.eta[c] = edge_within(index / 2 + 13 * c, FACET_ETA_FLOOR, FACET_ETA_CAP);
+        s.k[c] = edge_within(index / 3 + 3 * c, 0, FACET_ETA_CAP);
         s.irradiance[c] = edge_within(index / 5 + 11 * c, 0, 1e6f);
     }
+    if (kernel->light.kind != FACET_LIGHT_DIRECTIONAL) light_sample(&s, &kernel->light, edge_within(index, 1e-3f, 10));
     return s;
 }
 
@@ -251,20 +323,36 @@ static void keep_worst(const search *h, witness found[GOALS])
             if (h->slots[goal][i].reached > found[goal].reached) found[goal] = h->slots[goal][i];
 }
 
+/* Under the kernel's light, where it came from elsewhere. */
+static sample relit(const kernel_case *kernel, sample s)
+{
+    if (kernel->light.kind == FACET_LIGHT_DIRECTIONAL) s.light = NULL;
+    else if (!s.light || s.light->kind != kernel->light.kind) light_sample(&s, &kernel->light, 1);
+    return s;
+}
+
 /* What is known to be bad for any kernel. */
 static void try_table(search *h)
 {
+    sample samples[BATCH];
     const accuracy_row *row;
+    int count = 0;
     for (int i = 0; (row = accuracy_at(i)); i++)
-        for (int goal = 0; goal < GOALS; goal++)
-            if (row->worst[goal].reached > 0) try_samples(h, &row->worst[goal].s, 1, NULL);
+        for (int goal = 0; goal < GOALS; goal++) {
+            if (row->worst[goal].reached <= 0) continue;
+            samples[count++] = relit(h->kernel, row->worst[goal].s);
+            if (count < BATCH) continue;
+            try_samples(h, samples, count, NULL);
+            count = 0;
+        }
+    try_samples(h, samples, count, NULL);
 }
 
 void search_worst(const kernel_case *kernel, facet_tier tier, const error_bound *bound, search_effort effort,
                   witness found[GOALS])
 {
     search h = { .kernel = kernel, .bound = bound, .random = { 1 } };
-    h.set = kernels_of(kernel, tier, 0, tier == FACET_TIER_STRICT);
+    h.set = kernels_of(kernel, tier, tier == FACET_TIER_STRICT);
     memset(found, 0, GOALS * sizeof found[0]);
     for (int start = 0; start < effort.starts; start++) {
         memset(h.slots, 0, sizeof h.slots);

@@ -13,7 +13,7 @@ typedef struct {
 } kernel_set;
 
 /* The kernel on every architecture that runs here, or on the best one alone. */
-kernel_set kernels_of(const kernel_case *kernel, facet_tier tier, float f90, bool best_alone);
+kernel_set kernels_of(const kernel_case *kernel, facet_tier tier, bool best_alone);
 
 /* The sample's worst error over magnitude, of all architectures and channels. */
 typedef struct {
@@ -23,6 +23,7 @@ typedef struct {
     int channel;
 } measurement;
 
+/* At most MOST_MEASURED samples, all under the kernel's light. */
 enum { MOST_MEASURED = 1024 };
 void measure(const kernel_set *set, const sample *samples, int count, measurement *results);
 

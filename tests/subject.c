@@ -16,6 +16,15 @@ static bool is_covered(const extras *x, int index)
     return !x->coverage || x->coverage[index / 8] >> index % 8 & 1;
 }
 
+/* What the streams of another convention are made of. */
+static void alias_sources(facet_batch *b)
+{
+    for (int c = 0; c < 3; c++) b->base[c] = b->albedo[c];
+    b->metallic = b->f0[0];
+    b->specular_level = b->f0[1];
+    b->roughness = b->glossiness = b->alpha;
+}
+
 /* Shades `s` as it stands. `out` is the destination that FACET_ACCUMULATE reads, and takes the result. */
 static size_t shade_batch(const subject *u, const facet_plan *plan, const extras *x, const sample *s, int count,
                           rgb *out)
@@ -26,7 +35,10 @@ static size_t shade_batch(const subject *u, const facet_plan *plan, const extras
     facet_light light = b.batch.lights[0];
     light.visibility = x->visibility;
     b.batch.lights = &light;
+    alias_sources(&b.batch);
     memcpy(b.batch.ambient, x->ambient, sizeof x->ambient);
+    memcpy(b.batch.sh, x->sh, sizeof x->sh);
+    b.batch.occlusion = x->occlusion;
     b.batch.coverage = x->coverage;
     b.batch.flags = x->flags;
     b.batch.invalid = &invalid;
@@ -56,17 +68,19 @@ static size_t shade_amidst(const subject *u, const facet_plan *plan, const extra
 {
     sample all[ALL];
     rgb radiance[ALL] = { { 0 } };
-    float visibility[ALL];
+    float visibility[ALL], occlusion[ALL];
     uint8_t coverage[ALL / 8];
     extras amidst = *x;
     memcpy(all, other_samples(), sizeof all);
     memcpy(all + BEFORE, s, (size_t)count * sizeof *s);
     memcpy(radiance + BEFORE, out, (size_t)count * sizeof *out);
-    for (int i = 0; i < ALL; i++) visibility[i] = 1;
+    for (int i = 0; i < ALL; i++) visibility[i] = occlusion[i] = 1;
     if (x->visibility) memcpy(visibility + BEFORE, x->visibility, (size_t)count * sizeof *visibility);
+    if (x->occlusion) memcpy(occlusion + BEFORE, x->occlusion, (size_t)count * sizeof *occlusion);
     memset(coverage, 0xff, sizeof coverage);
     if (x->coverage) memcpy(coverage + BEFORE / 8, x->coverage, ((size_t)count + 7) / 8);
     if (x->visibility) amidst.visibility = visibility;
+    if (x->occlusion) amidst.occlusion = occlusion;
     if (x->coverage) amidst.coverage = coverage;
     const size_t invalid = shade_batch(u, plan, &amidst, all, ALL, radiance);
     memcpy(out, radiance + BEFORE, (size_t)count * sizeof *out);
@@ -100,9 +114,12 @@ size_t shade_material(const subject *u, const facet_material *m, const extras *x
 facet_material streaming_material(const subject *u)
 {
     facet_material material = u->kernel->material;
-    material.streams = u->kernel->streams;
+    material.streams = u->kernel->promised;
     return material;
 }
+
+bool has_specular(const subject *u) { return u->kernel->material.specular.model != FACET_DISTRIBUTION_NONE; }
+bool has_diffuse(const subject *u) { return u->kernel->material.diffuse.model != FACET_DIFFUSE_NONE; }
 
 size_t shade(const subject *u, const extras *x, const sample *s, int count, rgb *out)
 {
@@ -116,13 +133,25 @@ void ordinary(const subject *u, sample *s, int count)
     for (int i = 0; i < count; i++) s[i] = random_sample(&random, SAMPLES_UNIFORM, 0.05f, u->kernel->sigma_max);
 }
 
+/* y x n or, where n is near y, z x n: exact where n is an axis. */
+static void set_tangent(sample *s)
+{
+    const float *n = s->n;
+    const bool along_y = fabsf(n[1]) > 0.9f;
+    const float x = along_y ? -n[1] : n[2], y = along_y ? n[0] : 0, z = along_y ? 0 : -n[0];
+    const float length = sqrtf(x * x + y * y + z * z);
+    s->tangent[0] = x / length, s->tangent[1] = y / length, s->tangent[2] = z / length;
+}
+
 sample with_vectors(const float *n, const float *v, const float *l)
 {
-    sample s = { .albedo = { 0.8f, 0.5f, 0.2f }, .sigma = 0.4f, .alpha = 0.25f, .f0 = { 0.04f, 0.3f, 0.9f },
+    sample s = { .albedo = { 0.8f, 0.5f, 0.2f }, .sigma = 0.4f, .alpha = 0.25f, .alpha_y = 0.375f, .exponent = 30,
+                 .f0 = { 0.04f, 0.3f, 0.9f }, .eta = { 1.5f, 0.3f, 1.2f }, .k = { 0, 3, 0.5f },
                  .irradiance = { 3, 2, 1 } };
     memcpy(s.n, n, sizeof s.n);
     memcpy(s.v, v, sizeof s.v);
     memcpy(s.l, l, sizeof s.l);
+    set_tangent(&s);
     return s;
 }
 
@@ -140,9 +169,23 @@ void expect_same(const subject *u, const rgb *a, const rgb *b, int count, const 
 
 void expect_all(const subject *u, const rgb *radiance, int count, float value)
 {
+    expect_within(u, radiance, count, value, value);
+}
+
+void expect_within(const subject *u, const rgb *radiance, int count, float least, float most)
+{
     for (int i = 0; i < count; i++)
         for (int c = 0; c < 3; c++)
-            expect(radiance[i][c] == value, "%s: sample %d is %a", u->kernel->name, i, (double)radiance[i][c]);
+            expect(radiance[i][c] >= least && radiance[i][c] <= most, "%s: sample %d is %a", u->kernel->name, i,
+                   (double)radiance[i][c]);
+}
+
+void expect_dark(const subject *u, const sample *s, int count)
+{
+    static const extras glow = { .emission = { 1, 1, 1 } };
+    rgb radiance[MOST];
+    expect(shade(u, &glow, s, count, radiance) == 0, "%s: counted as invalid", u->kernel->name);
+    expect_all(u, radiance, count, 1);
 }
 
 void expect_reference(const subject *u, const sample *s, int count, bool exact)
