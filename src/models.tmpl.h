@@ -353,8 +353,8 @@ OP vf visibility_smith_ggx(surface s, incidence i)
 OP vf v_cavity(surface s, incidence i)
 {
     (void)s;
-    vf G4 = vf_abs(i.nw) * vf_min(i.nl, i.nv) / vf_max(splat(TINY), i.hh);
-    return vf_where(vf_lt(splat(0.0f), i.nl), vf_min(splat(0.25f), G4) / i.nv);
+    vf inverse = 1.0f / i.nv, near = vf_abs(i.nw) / vf_max(splat(TINY), i.hh);
+    return vf_min(0.25f * inverse, near * (vf_min(i.nl, i.nv) * inverse));
 }
 #define visibility_v_cavity_ggx v_cavity
 #define visibility_v_cavity_ggx_anisotropic v_cavity

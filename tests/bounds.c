@@ -33,8 +33,8 @@ static bool is_tangent(const float *a, const float *n)
 
 bool in_domain(const sample *s, cosines c)
 {
-    return c.nl >= 0x1p-22 && c.nv >= 0x1p-22 && is_unit(s->n) && is_unit(s->v) && (s->light || is_unit(s->l))
-        && is_tangent(s->tangent, s->n);
+    return c.nl >= 0x1p-22 && c.nv >= 0x1p-22 && is_unit(s->n) && is_unit(s->v) && is_tangent(s->tangent, s->n)
+        && (s->light ? c.vh >= 0x1p-6 : is_unit(s->l));
 }
 
 static bool is_anisotropic(facet_distribution model)
@@ -115,10 +115,17 @@ static char *next_field(char **line)
     return field ? field : "";
 }
 
-static void read_bound(accuracy_row *row, char *line)
+/* Whether the field before was there, and the last. */
+static bool is_end(const char *line)
+{
+    return line && !*line;
+}
+
+static bool read_bound(accuracy_row *row, char *line)
 {
     for (int goal = 0; goal < GOALS; goal++) row->bound.limit[goal] = strtod(next_field(&line), NULL);
     row->bound.p999 = strtod(next_field(&line), NULL);
+    return is_end(line);
 }
 
 static bool read_witness(accuracy_row *row, char *line)
@@ -140,7 +147,7 @@ static bool read_witness(accuracy_row *row, char *line)
     w->s.light = kernel && kernel->light.kind != FACET_LIGHT_DIRECTIONAL ? &kernel->light : NULL;
     w->got = strtof(next_field(&line), NULL);
     w->want = strtod(next_field(&line), NULL);
-    return true;
+    return is_end(line);
 }
 
 static accuracy_row *find_row(const char *name, facet_tier tier)
@@ -170,9 +177,7 @@ static bool read_line(char *line)
     accuracy_row *row = find_row(name, (facet_tier)tier);
     if (!row) row = add_row(name, (facet_tier)tier);
     if (!row || !line) return false;
-    if (!strcmp(kind, "witness")) return read_witness(row, line);
-    read_bound(row, line);
-    return !strcmp(kind, "bound");
+    return !strcmp(kind, "witness") ? read_witness(row, line) : !strcmp(kind, "bound") && read_bound(row, line);
 }
 
 static void read_table(void)
@@ -206,12 +211,21 @@ const accuracy_row *find_accuracy(const char *name, facet_tier tier)
     return find_row(name, tier);
 }
 
+void keep_accuracy(const accuracy_row *row)
+{
+    if (row_count < 0) read_table();
+    accuracy_row *place = find_row(row->name, row->tier);
+    if (!place) place = add_row(row->name, row->tier);
+    if (place) *place = *row;
+}
+
 void write_accuracy_head(FILE *file)
 {
     fputs("# Error bounds of the kernels, and the worst inputs found: written by `facet-check --update accuracy`.\n"
           "# |got - want| <= 2^-24 magnitude (rel + grazing/nl + peak/alpha)\n"
-          "#     for unit vectors, nl, nv >= 2^-22, alpha >= 1e-4; of an anisotropic distribution the smaller alpha,\n"
-          "#     and the smaller of nl and nv; of a lobe alpha is sqrt(2/(exponent + 2));\n"
+          "#     for unit vectors, nl, nv >= 2^-22, alpha >= 1e-4, and under a light with a position vh >= 2^-6; of\n"
+          "#     an anisotropic distribution the smaller alpha, and the smaller of nl and nv; of a lobe alpha is\n"
+          "#     sqrt(2/(exponent + 2));\n"
           "# |got - want| <= plain magnitude for nl, nv > 5e-4, alpha >= 0.01;\n"
           "#     <= p99.9 magnitude for 99.9 % of samples, half uniform, half in the lobe, alpha >= 0.01.\n"
           "# magnitude (tests/reference.h): the radiance, but terms that cancel count as their absolute values: s0 of\n"

@@ -4,10 +4,11 @@
  *     |got - want| <= u magnitude (rel + grazing/nl + peak/alpha) + tiny
  *
  * for unit vectors (as near as float holds them), a tangent that is perpendicular to the normal (as near), nl, nv >=
- * 2^-22 and alpha as clamped; `want` and `magnitude` are reference_terms', and `tiny` is what underflow may cost. Of an
- * anisotropic distribution alpha is the smaller one, and nl the smaller of nl and nv: v may lie along the narrow axis
- * and l along the wide one. Of a lobe alpha is sqrt(2/(exponent + 2)). Where nl, nv > 5e-4, alpha >= 0.01, the same is
- * at most plain magnitude. */
+ * 2^-22 and alpha as clamped; under a point or spot light, whose l is rounded, also vh >= 2^-6, so that v + l keeps its
+ * direction. `want` and `magnitude` are reference_terms', and `tiny` is what underflow may cost. Of an anisotropic
+ * distribution alpha is the smaller one, and nl the smaller of nl and nv: v may lie along the narrow axis and l along
+ * the wide one. Of a lobe alpha is sqrt(2/(exponent + 2)). Where nl, nv > 5e-4, alpha >= 0.01, the same is at most
+ * plain magnitude. */
 #ifndef BOUNDS_H
 #define BOUNDS_H
 
@@ -48,6 +49,9 @@ void make_grey(sample *s, int channel);
  * a line on stderr says so. */
 const accuracy_row *accuracy_at(int index);
 const accuracy_row *find_accuracy(const char *name, facet_tier tier);
+
+/* Puts a row in the place of its case's and tier's, or behind the last. */
+void keep_accuracy(const accuracy_row *row);
 
 /* Writes the table's head, and a row. */
 void write_accuracy_head(FILE *file);

@@ -37,7 +37,7 @@ compiled() {
     dir=$build/cross/$compiler$level
     compiles "$compiler $level" "$dir" CC="$compiler" CFLAGS="$level -Werror" \
         all "$dir/facet-check" "$dir/facet-demo" "$dir/facet-bench" &&
-        program "$compiler $level" facet-check "$dir/facet-check" --slow golden
+        program "$compiler $level" facet-check "$dir/facet-check" --slow golden conversions metals
 }
 
 # The scalar kernel over vectors of one lane, where a cast or a comparison meant for floats does not compile.
@@ -45,7 +45,7 @@ linted() {
     dir=$build/cross/lint-$1
     compiles "lint $1" "$dir" CC="$1" CFLAGS='-O2 -Werror' HEADER.scalar=../tests/lint.h ARCHES=scalar \
         "$dir/facet-check" &&
-        program "lint $1" facet-check "$dir/facet-check" --slow golden
+        program "lint $1" facet-check "$dir/facet-check" --slow golden conversions metals
 }
 
 # old_cpu MODEL ARCH...: runs these architectures and refuses the others, without an illegal instruction.
