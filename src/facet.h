@@ -212,7 +212,8 @@ enum {
  *   fresnel.eta_outside  index of the medium around it, clamped as eta; 0: 1.
  *   fresnel.polarisation of the light, as DIELECTRIC and CONDUCTOR see it: -1 perpendicular to the plane of incidence,
  *                        0 none, 1 parallel to it; between them, a mixture.
- *   convention           what base, metallic, roughness, specular_level, glossiness stand in for, each in [0, 1]:
+ *   convention           what base, metallic, roughness, specular_level, glossiness stand in for, each clamped to
+ *                        [0, 1], but that a base above 1 is used as it is:
  *                        METALLIC_ROUGHNESS: albedo = base (1 - metallic), f0 = lerp(0.08 specular_level, base,
  *                        metallic), alpha = roughness^2, the rest as it is; a specular_level of 0 here is 0.5, and a
  *                        negative one 0.
@@ -220,8 +221,9 @@ enum {
  *   coupled              the diffuse part is multiplied by 1 - F, per channel and light (not under ambient light).
  *   emission             radiance, negative is 0.
  *   streams              FACET_STREAM_ALBEDO and those after it: every batch brings these per sample, and the numbers
- *                        here are ignored. Where F0 is promised and ETA is not, DIELECTRIC's eta is f0's, per sample;
- *                        where ETA is promised, f0 is not and all its numbers are 0, f0 is that of eta and k. */
+ *                        here are ignored. What the convention makes of others need not come, promised or not. Where
+ *                        F0 is promised and ETA is not, DIELECTRIC's eta is f0's, per sample; where ETA is promised, f0
+ *                        is not and all its numbers are 0, f0 is that of eta and k. */
 typedef struct facet_material {
     struct { facet_diffuse model; float albedo[3], sigma; } diffuse;
     struct { facet_distribution model; facet_masking masking; float alpha, alpha_y, exponent, scale; } specular;
@@ -282,8 +284,8 @@ typedef enum facet_light_kind {
  *   range          a distance beyond which nothing arrives: times clamp(1 - (d/range)^4, 0, 1)^2; 0: no end.
  *   axis           of a spot light: unit, from the light along the cone's middle; all zero is refused.
  *   cos_inner, cos_outer: cosines of the angle to the axis, -1 <= cos_outer <= cos_inner <= 1. Full within the inner
- *                  cone, nothing beyond the outer one, smoothstep of the cosine between them; where they are equal, a
- *                  step.
+ *                  cone and on it, nothing beyond the outer one, smoothstep of the cosine between them; where they are
+ *                  equal, a step.
  *   direction_of, irradiance_of: direction and irradiance per sample (all three pointers or none); point and spot
  *                  lights take irradiance_of alone.
  *   visibility     per sample, clamped to [0, 1], multiplies the irradiance; NULL: 1. */
@@ -348,12 +350,12 @@ typedef struct facet_batch {
  *   nl <= 0 or nv <= 0                                     that light adds exactly 0
  *   v + l = 0                                              specular 0
  *   a point or spot light at distance 0, or whose squared
- *   distance is no normal float; at its range or beyond;
- *   outside its outer cone                                 that light adds exactly 0
+ *   distance is no normal float; beyond its range or outer
+ *   cone, as far as rounding tells                         that light adds exactly 0
  *   r.v <= 0 under Phong, exp(-x) below 2^-126, a full
  *   Oren-Nayar sum below 0                                 that part adds exactly 0
  *   eta = eta_outside and k = 0                            the exact Fresnel terms are exactly 0
- *   beyond the critical angle                              they are exactly 1
+ *   beyond the critical angle                              the dielectric's is exactly 1
  *   k = 0 in a conductor                                   the dielectric's, within rounding
  *   a tangent that is not perpendicular to n               finite and >= 0, without a promise of accuracy
  *   a result that would overflow                           FLT_MAX

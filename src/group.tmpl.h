@@ -40,6 +40,7 @@ typedef struct {
 typedef struct {
     const float *const *component;       /* of the block's streams */
     size_t at;                           /* the group's first sample in the block */
+    bool mended;
     vf nv[VECTORS];                      /* as it comes, of any sign */
     terms terms[VECTORS];
     vf is_finite[VECTORS];               /* 0, or NaN where a light's or the destination's value was not finite */
@@ -159,6 +160,7 @@ OP vf cone(const facet_light *light, vf3 l)
 {
     vf c = -dot(l, splat3(light->axis)), width = vf_max(splat(TINY), splat(light->cos_inner) - splat(light->cos_outer));
     vf t = clamp((c - splat(light->cos_outer)) / width, 0.0f, 1.0f);
+    t = vf_select(vf_lt(c, splat(light->cos_inner)), t, splat(1.0f));
     return square(t) * (3.0f - 2.0f * t);
 }
 
@@ -265,8 +267,20 @@ OP void fresnel(const group *g, features x, const plan_fields *p, const incidenc
     }
 }
 
+/* In a group that was mended nothing infinite or undefined gets from one light into the sum, or from one part of its
+ * light into the other: 0 for NaN, FLT_MAX for infinity. What is finite is left as it is. */
+OP vf finite_part(vf a) { return clamp(a, 0.0f, FLT_MAX); }
+OP vf3 finite_part3(vf3 a) { return clamp3(a, 0.0f, FLT_MAX); }
+
+OP vf add_finite(vf f, vf E, vf sum)
+{
+    vf next = vf_mad(f, E, sum);
+    return vf_select(vf_eq(next - next, splat(0.0f)), next, finite_part(sum + finite_part(f * E)));
+}
+
 OP void add_light(group *g, features x, const job *j, const facet_light *light, size_t i)
 {
+    const bool mended = !x.plain && g->mended;
     const plan_fields *p = j->plan;
     vf3 l[VECTORS], f[VECTORS], E[VECTORS];
     vf nl[VECTORS], arrives[VECTORS];
@@ -290,6 +304,7 @@ OP void add_light(group *g, features x, const job *j, const facet_light *light, 
         }
     face(g, x, nl, t);
     diffuse(g, x, p, t, f);
+    if (mended) EACH(k) f[k] = finite_part3(f[k]);
     if (SPECULAR_BUILT && x.distribution != FACET_DISTRIBUTION_NONE) {
         vf D[VECTORS], V[VECTORS];
         vf3 F[VECTORS];
@@ -302,10 +317,21 @@ OP void add_light(group *g, features x, const job *j, const facet_light *light, 
         fresnel(g, x, p, t, F);
         if (x.coupled) EACH(k) f[k] = mul3(f[k], one_minus3(F[k]));
         if (x.scaled) EACH(k) V[k] = V[k] * splat(p->scale);
-        EACH(k) f[k] = mad3(F[k], same3(D[k] * V[k]), f[k]);
+        EACH(k) D[k] = D[k] * V[k];
+        if (mended) EACH(k) D[k] = finite_part(D[k]);
+        EACH(k) f[k] = mad3(F[k], same3(D[k]), f[k]);
     }
     load_irradiance(g, x, j, light, i, arrives, E);
-    EACH(k) g->sum[k] = mad3(f[k], E[k], g->sum[k]);
+    if (!mended) {
+        EACH(k) g->sum[k] = mad3(f[k], E[k], g->sum[k]);
+        return;
+    }
+    EACH(k) {
+        vf3 a = finite_part3(f[k]), sum = g->sum[k];
+        g->sum[k].x = add_finite(a.x, E[k].x, sum.x);
+        g->sum[k].y = add_finite(a.y, E[k].y, sum.y);
+        g->sum[k].z = add_finite(a.z, E[k].z, sum.z);
+    }
 }
 
 /* ---- The end of a group ----------------------------------------------------------------------------------------- */
@@ -330,6 +356,7 @@ OP vf3 ambient(const group *g, features x, const job *j, int k)
         sh = mad3(splat3(j->sh[3]), same3(n.x), sh);
         E = add3(E, not_negative3(sh));
     }
+    if (g->mended) E = finite_part3(E);
     return x.streams & FACET_STREAM_OCCLUSION ? scale3(E, LOAD(g, OCCLUSION, k)) : E;
 }
 

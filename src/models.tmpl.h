@@ -159,7 +159,7 @@ OP vf3 diffuse_fujii(surface s, incidence i) { return scale3(s.albedo, fujii(s, 
  *     albedo_ms/pi (1 - E(nv)) (1 - E(nl))/(1 - Eavg), albedo_ms = albedo^2 Eavg/(1 - albedo (1 - Eavg)),
  *     E(mu) = A (1 + r G(mu)/pi), Eavg = A (1 + c2 r), A = 1/(1 + c1 r), c1 = 1/2 - 2/(3 pi), c2 = 2/3 - 28/(15 pi).
  * 1 - E(mu) = A r (c1 - G(mu)/pi) and 1 - Eavg = A r (c1 - c2): one r cancels, and r = 0 is Lambert. The fit of G
- * passes c1 for mu < 0.00138, where E would exceed 1: p = max(0, c1 - G/pi). */
+ * passes c1 for mu < 0.00138, where E would exceed 1: p = max(0, c1 - G/pi). An albedo above 1 is 1 in albedo_ms. */
 OP vf eon_missing(vf mu)
 {
     vf x = 1.0f - mu;
@@ -172,7 +172,7 @@ OP vf3 diffuse_eon(surface s, incidence i)
 {
     vf3 once = diffuse_fujii(s, i), white = clamp3(s.albedo, 0.0f, 1.0f);
     vf more = s.terms.C * i.nl * eon_missing(i.nl) * eon_missing(i.nv);
-    vf3 a2 = mul3(s.albedo, s.albedo);
+    vf3 a2 = mul3(white, white);
     return (vf3){ vf_mad(a2.x, more / vf_nmad(white.x, s.terms.D, splat(1.0f)), once.x),
                   vf_mad(a2.y, more / vf_nmad(white.y, s.terms.D, splat(1.0f)), once.y),
                   vf_mad(a2.z, more / vf_nmad(white.z, s.terms.D, splat(1.0f)), once.z) };

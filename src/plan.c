@@ -40,11 +40,15 @@ static enum visibility find_visibility(int masking, int distribution)
     return (enum visibility)i;
 }
 
+static facet_status check_enumerator(facet_kind kind, int value, const char *field, facet_error *error)
+{
+    return facet_word(kind, value) ? FACET_OK : refuse(error, FACET_ERROR_ENUM, field, -1);
+}
+
 static facet_status check_row(facet_kind kind, int value, const char *field, facet_error *error)
 {
-    if (!facet_word(kind, value)) return refuse(error, FACET_ERROR_ENUM, field, -1);
-    if (!facet_has(kind, value)) return refuse(error, FACET_ERROR_MODEL, field, -1);
-    return FACET_OK;
+    facet_status status = check_enumerator(kind, value, field, error);
+    return status || facet_has(kind, value) ? status : refuse(error, FACET_ERROR_MODEL, field, -1);
 }
 
 static bool is_lobe(const facet_material *m)
@@ -57,6 +61,8 @@ static facet_status check_models(const facet_material *m, facet_error *error)
     facet_status status = check_row(FACET_KIND_DIFFUSE, (int)m->diffuse.model, "diffuse.model", error);
     if (!status) status = check_row(FACET_KIND_DISTRIBUTION, (int)m->specular.model, "specular.model", error);
     if (!status) status = check_row(FACET_KIND_CONVENTION, (int)m->convention.model, "convention.model", error);
+    if (!status) status = check_enumerator(FACET_KIND_FRESNEL, (int)m->fresnel.model, "fresnel.model", error);
+    if (!status) status = check_enumerator(FACET_KIND_MASKING, (int)m->specular.masking, "specular.masking", error);
     if (status || m->specular.model == FACET_DISTRIBUTION_NONE) return status;
     status = check_row(FACET_KIND_FRESNEL, (int)m->fresnel.model, "fresnel.model", error);
     if (status || is_lobe(m)) return status;
@@ -340,6 +346,9 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
     compile_diffuse(p, m);
     compile_specular(p, m);
     derive_parameters(p, m);
+    if (!(p->fresnel_properties & MEDIA)) p->polarisation = 0.0f;
+    if (!(p->fresnel_properties & MEDIA || (p->derived & FACET_STREAM_F0 && p->number_from & F0_FROM_ETA)))
+        p->eta_outside = 0.0f;
     forget_numbers(p);
     p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
     p->common = has_common_models(p);

@@ -90,6 +90,7 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
         group g;
         g.component = b->component;
         g.at = at;
+        g.mended = b->mended;
         EACH(k) odd[k] = odd_values(&g, x, j->plan, k);
         prepare(&g, x, j);
         const size_t lights = x.plain ? 1 : j->light_count;

@@ -188,7 +188,7 @@ static term eon(cosines c, double rho, double sigma)
 {
     const double r = clamp(sigma, 0, 1), c1 = 0.5 - 2 / (3 * PI), c2 = 2.0 / 3 - 28 / (15 * PI);
     const double AF = 1 / (1 + c1 * r), average = AF * (1 + c2 * r), ratio = fujii_ratio(c);
-    const double rho_ms = rho * rho * average / (1 - fmin(rho, 1) * (1 - average));
+    const double white = fmin(rho, 1), rho_ms = white * white * average / (1 - white * (1 - average));
     const double multiple = rho_ms / PI * AF * r * eon_loss(c.nv, c1) * eon_loss(c.nl, c1) / (c1 - c2);
     const double once = rho / PI * AF;
     return (term){ once * fmax(0, 1 + r * ratio) + multiple, once * (1 + r * fabs(ratio)) + multiple };

@@ -181,6 +181,13 @@ static void test_models(void)
     PLAN_REFUSES(m.specular.masking = (facet_masking)-1, FACET_ERROR_ENUM, "specular.masking", -1);
     PLAN_REFUSES(m.fresnel.model = (facet_fresnel)99, FACET_ERROR_ENUM, "fresnel.model", -1);
     PLAN_REFUSES(m.fresnel.model = (facet_fresnel)-1, FACET_ERROR_ENUM, "fresnel.model", -1);
+    const facet_distribution nothing = FACET_DISTRIBUTION_NONE;
+    PLAN_REFUSES((m.specular.model = nothing, m.fresnel.model = (facet_fresnel)(1 << 12)), FACET_ERROR_ENUM,
+                 "fresnel.model", -1);
+    PLAN_REFUSES((m.specular.model = nothing, m.specular.masking = (facet_masking)99), FACET_ERROR_ENUM,
+                 "specular.masking", -1);
+    PLAN_REFUSES((m.specular.model = FACET_DISTRIBUTION_PHONG, m.specular.masking = (facet_masking)99),
+                 FACET_ERROR_ENUM, "specular.masking", -1);
     PLAN_REFUSES(m.convention.model = (facet_convention)99, FACET_ERROR_ENUM, "convention.model", -1);
     PLAN_REFUSES(m.convention.model = (facet_convention)-1, FACET_ERROR_ENUM, "convention.model", -1);
     for (uint32_t bit = 1; bit; bit <<= 1) {

@@ -430,6 +430,36 @@ static void overflow(const subject *u)
 
 /* ---- The suite --------------------------------------------------------------------------------------------------- */
 
+/* Infinities of one light, or of one part of its light, take nothing from what else there is: here emission, and with
+ * ambient light more than FLT_MAX of it. */
+static void infinities_stay_apart(const subject *u)
+{
+    static const float views[][3] = { { 0, 4.9f, -1 }, { 0, 6, -4 }, { 0, 1e20f, 1e19f }, { 0, 0, 1 },
+                                      { 0, 0.6f, 0.8f } };
+    static const float lights[][3] = { { 0, 1, 0.01f }, { 0, 1, 0.1f }, { 0, 1e20f, -1e19f }, { 0, 1e20f, 1e19f },
+                                       { 0.6f, 0, 0.8f } };
+    static const extras plain = { .emission = { 1, 1, 1 } };
+    static const extras bright = { .emission = { 1, 1, 1 }, .ambient = { FLT_MAX, FLT_MAX, FLT_MAX } };
+    facet_material material = streaming_material(u);
+    sample s[25];
+    rgb radiance[25];
+    material.specular.scale = FLT_MAX;
+    for (int i = 0; i < 25; i++) {
+        s[i] = with_vectors(up, views[i % 5], lights[i / 5]);
+        s[i].alpha = s[i].alpha_y = 0.01f;
+        if (i % 2) s[i].albedo[0] = s[i].f0[0] = 0;
+        if (i % 3) s[i].irradiance[2] = 0;
+    }
+    for (int k = 0; k < 2; k++) {
+        shade(u, k ? &bright : &plain, s, 25, radiance);
+        for (int i = 0; i < 25; i++)
+            for (int c = 0; c < 3; c++) expect(radiance[i][c] >= 1, "%s: sample %d lost it", u->kernel->name, i);
+        shade_material(u, &material, k ? &bright : &plain, s, 25, radiance);
+        for (int i = 0; i < 25; i++)
+            for (int c = 0; c < 3; c++) expect(radiance[i][c] >= 1, "%s: scaled %d lost it", u->kernel->name, i);
+    }
+}
+
 static const trap traps[] = {
     { "nl < 0 or nv < 0: nothing but ambient and emission", facing_away },
     { "nl = 0 or nv = 0", at_right_angles },
@@ -455,6 +485,7 @@ static const trap traps[] = {
     { "eta from f0 >= 1 is capped", index_of_full_reflectance },
     { "overflow saturates at FLT_MAX", overflow },
     { "vectors far from unit length", far_from_unit },
+    { "infinities of one light take nothing from the rest", infinities_stay_apart },
     { "two-sided turns the normal", two_sided },
 };
 
