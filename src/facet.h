@@ -205,7 +205,8 @@ enum {
  *                        facet_f0_from_eta.
  *   fresnel.f90          Schlick's reflectance at grazing, clamped to [0, 1]; 0: 1.
  *   fresnel.f82          SCHLICK_F82's reflectance where vh = 1/7 (82 degrees), clamped to [0, 1]. Where all three are
- *                        0, the conductor's of eta and k, which must then be given as numbers.
+ *                        0, the conductor's of eta and k, which must then be given as numbers, with eta_outside and
+ *                        polarisation.
  *   fresnel.eta, .k      index of refraction, > 0 in every channel once one is given, and extinction, >= 0, clamped to
  *                        [FACET_ETA_FLOOR, FACET_ETA_CAP] and [0, FACET_ETA_CAP]. DIELECTRIC takes eta_outside times
  *                        facet_eta_from_f0(f0) where no eta is given; CONDUCTOR needs eta.

@@ -296,7 +296,7 @@ OP vf correlated(incidence i, vf l, vf v)
 /* GGX: Lambda = (-1 + sqrt(1 + alpha^2 tan^2))/2, mu/G1 = (mu + sqrt(mu^2 + y^2))/2. */
 OP vf ggx(vf mu, vf y2) { return 0.5f * (mu + vf_sqrt(vf_mad(mu, mu, y2))); }
 
-/* Walter et al. 2007, eq. 26, for Beckmann, a = mu/y: G1 = (3.535 a + 2.181 a^2)/(1 + 2.276 a + 2.577 a^2) for a < 1.6,
+/* Walter et al. 2007, eq. 27, for Beckmann, a = mu/y: G1 = (3.535 a + 2.181 a^2)/(1 + 2.276 a + 2.577 a^2) for a < 1.6,
  * at most 1; 1 above. Within 0.31 % of the exact one. */
 OP vf walter(vf mu, vf y2)
 {
