@@ -305,7 +305,7 @@ static void measure_rows(void)
                 if (pass > 0) row = *find_accuracy(row.name, row.tier);
                 if (pass == 0) balance(case_at(i), &row);
                 scale(case_at(i), pass > 0 ? effort() : (search_effort){ 6, 300, 1000, 1 }, &row);
-                row.bound.p999 = round_up(1.05 * measure_p999(case_at(i), row.tier));
+                row.bound.p999 = round_up(margin * measure_p999(case_at(i), row.tier));
                 keep_accuracy(&row);
             }
 }
