@@ -102,8 +102,8 @@ void rig_add(shading *s, rig which)
             add_box(s, &boxes[i]);
     if (which == RIG_RIM)
         for (int i = 0; i < RINGS * RING_LIGHTS; i++)
-            add_ring_light(s, rings[i / RING_LIGHTS].angle, (double)(i % RING_LIGHTS) / RING_LIGHTS,
-                           rings[i / RING_LIGHTS].irradiance / RING_LIGHTS);
+            add_ring_light(s, rings[i / RING_LIGHTS].angle, (double)(i % RING_LIGHTS) / (double)RING_LIGHTS,
+                           rings[i / RING_LIGHTS].irradiance / (float)RING_LIGHTS);
     if (which == RIG_RIM)
         add_ring_light(s, 40, 0.35, 1);
 }
