@@ -115,8 +115,8 @@ OP void prepare(group *g, features x, const job *j)
 
 /* ---- One light -------------------------------------------------------------------------------------------------- */
 
-/* The end of a light's own stream, with zeros behind it. Rare: out of the way. */
-static __attribute__((noinline, cold)) void pad_light(const float *from, size_t left, float *padded)
+/* The end of a stream, with zeros behind it. Rare: out of the way. */
+static __attribute__((noinline, cold)) void pad(const float *from, size_t left, float *padded)
 {
     for (size_t lane = 0; lane < GROUP; lane++) padded[lane] = lane < left ? from[lane] : 0.0f;
 }
@@ -127,7 +127,7 @@ OP void load_light(const job *j, const float *stream, size_t i, vf *a, vf *is_fi
     const float *from = stream + i;
     float padded[GROUP];
     if (j->count - i < GROUP) {
-        pad_light(from, j->count - i, padded);
+        pad(from, j->count - i, padded);
         from = padded;
     }
     EACH(k) {

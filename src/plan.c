@@ -120,17 +120,23 @@ static facet_status check_values(const facet_material *m, uint32_t needed, facet
     return FACET_OK;
 }
 
+/* Whether the material says an index, a reflectance at normal incidence, in whatever way. */
+static bool gives_eta(const facet_material *m) { return any(m->fresnel.eta) || m->streams & FACET_STREAM_ETA; }
+static bool gives_f0(const facet_material *m)
+{
+    return any(m->fresnel.f0) || m->streams & FACET_STREAM_F0
+        || m->convention.model == FACET_CONVENTION_METALLIC_ROUGHNESS;
+}
+
 /* Whether there is an index, or what one can be made from. */
 static facet_status check_index(const facet_material *m, facet_error *error)
 {
     const uint32_t reads = fresnel_rows[m->fresnel.model].reads;
     const bool numbers = any(m->fresnel.eta), streams = m->streams & FACET_STREAM_ETA;
-    const bool f0 = any(m->fresnel.f0) || m->streams & FACET_STREAM_F0
-        || m->convention.model == FACET_CONVENTION_METALLIC_ROUGHNESS;
     for (int c = 0; c < 3; c++)
         if (numbers && !streams && m->fresnel.eta[c] == 0.0f) return refuse(error, FACET_ERROR_VALUE, "fresnel.eta", c);
     if (m->specular.model == FACET_DISTRIBUTION_NONE) return FACET_OK;
-    if (reads & FACET_STREAM_ETA && !numbers && !streams && (reads & FACET_STREAM_K || !f0))
+    if (reads & FACET_STREAM_ETA && !gives_eta(m) && (reads & FACET_STREAM_K || !gives_f0(m)))
         return refuse(error, FACET_ERROR_VALUE, "fresnel.eta", -1);
     if (fresnel_rows[m->fresnel.model].properties & F82 && !any(m->fresnel.f82)
         && (!numbers || m->streams & (FACET_STREAM_ETA | FACET_STREAM_K)))
@@ -243,13 +249,10 @@ static void derive_by_convention(plan_fields *p, uint32_t wanted)
 /* Parameters of which the models read one and the material says another. */
 static void derive_parameters(plan_fields *p, const facet_material *m)
 {
-    const bool eta_given = any(m->fresnel.eta) || m->streams & FACET_STREAM_ETA;
-    const bool f0_given = any(m->fresnel.f0) || m->streams & FACET_STREAM_F0
-        || m->convention.model == FACET_CONVENTION_METALLIC_ROUGHNESS;
     const bool no_alpha_y = m->specular.alpha_y == 0.0f && !(m->streams & FACET_STREAM_ALPHA_Y);
     uint32_t wanted = p->needed;
-    if (wanted & FACET_STREAM_F0 && eta_given && !f0_given) p->number_from |= F0_FROM_ETA;
-    if (wanted & FACET_STREAM_ETA && !eta_given) {
+    if (wanted & FACET_STREAM_F0 && gives_eta(m) && !gives_f0(m)) p->number_from |= F0_FROM_ETA;
+    if (wanted & FACET_STREAM_ETA && !gives_eta(m)) {
         p->number_from |= ETA_FROM_F0;
         wanted |= FACET_STREAM_F0;
     }

@@ -108,6 +108,9 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint6
 
 typedef size_t block_shader(const job *, const block *, size_t at, uint64_t *invalid);
 
+/* What the models and lights read, from the batch, the plan or what the kernel made. */
+OP uint32_t streams_read(const job *j) { return (j->streams & ~j->plan->sources) | j->plan->needed; }
+
 OP size_t shade_features(const job *j, bool common, const block *b, size_t at, uint64_t *invalid)
 {
     const plan_fields *p = j->plan;
@@ -116,7 +119,7 @@ OP size_t shade_features(const job *j, bool common, const block *b, size_t at, u
         .distribution = (facet_distribution)p->distribution,
         .visibility = (enum visibility)p->visibility,
         .fresnel = (facet_fresnel)p->fresnel,
-        .streams = (j->streams & ~p->sources) | p->needed,
+        .streams = streams_read(j),
         .coupled = p->coupled,
         .scaled = p->scale != 1.0f,
         .two_sided = j->flags & FACET_TWO_SIDED,
@@ -208,7 +211,7 @@ static __attribute__((noinline)) uint32_t zero_vectors(float (*values)[GROUP], i
 static uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GROUP])
 {
     const plan_fields *p = j->plan;
-    const uint32_t read = (j->streams & ~p->sources) | p->needed;
+    const uint32_t read = streams_read(j);
     const struct { float low, high; } domain[STREAM_COUNT] = {
 #define FACET_STREAM(id, field, components, owner, low, high, title) { low, high },
 #include "streams.def"
@@ -274,7 +277,7 @@ OP vf source(const block *b, int component, size_t at, float low, float high)
     const float *from = b->component[component] + at;
     float padded[GROUP];
     if (b->count - at < VF_LANES) {
-        pad_light(from, b->count - at, padded);
+        pad(from, b->count - at, padded);
         from = padded;
     }
     vf a = vf_load(from);
