@@ -104,7 +104,7 @@ static void describe_diffuse(writer *w, const plan_fields *p)
     put_parameter(w, p, FACET_STREAM_ALBEDO, "albedo", p->albedo, 3);
     put_parameter(w, p, FACET_STREAM_SIGMA, "sigma", &p->sigma, 1);
     if (p->needed & FACET_STREAM_SIGMA && !(p->promised & FACET_STREAM_SIGMA))
-        put_numbers(w, ", A and B", (float[]){ p->terms[0] / INV_PI, p->terms[1] / INV_PI }, 2);
+        put_numbers(w, ", A and B", p->terms, 2);
     put(w, "\n");
 }
 

@@ -30,16 +30,19 @@ typedef struct {
     facet_fresnel fresnel;
     uint32_t streams;        /* FACET_STREAM_*: what is read, or made by the kernel and read */
     bool coupled, scaled, two_sided;
-    bool common;             /* the models' rows are COMMON and the lights directional */
-    bool plain;              /* one light without streams, nothing else added, and nobody counts what is invalid */
+    bool sigma_given;        /* per sample */
+    bool dense;              /* the batch is, and the group was not mended */
+    bool plain;              /* one directional light without streams, nothing else added, F90 1, and nobody counts
+                                what is invalid */
 } features;
 
 /* ---- A group ----------------------------------------------------------------------------------------------------
  * Streams are read where they are needed, again for each light: a load is cheaper than a register held. */
 
 typedef struct {
-    const float *const *component;       /* of the block's streams */
-    size_t at;                           /* the group's first sample in the block */
+    const float *const *component;       /* of the streams, and the masks of their indices */
+    const size_t *mask;
+    size_t at;                           /* the group's first sample in the batch */
     bool mended;
     vf nv[VECTORS];                      /* as it comes, of any sign */
     terms terms[VECTORS];
@@ -47,21 +50,22 @@ typedef struct {
     vf3 sum[VECTORS];                    /* over the lights */
 } group;
 
-#define LOAD(g, id, k)  load(g, COMPONENT_##id, k)
-#define LOAD3(g, id, k) load3(g, COMPONENT_##id, k)
+#define LOAD(g, id, k)  load(g, x.dense, COMPONENT_##id, k)
+#define LOAD3(g, id, k) load3(g, x.dense, COMPONENT_##id, k)
 
-OP vf load(const group *g, int component, int k)
+OP vf load(const group *g, bool dense, int component, int k)
 {
-    return vf_load(g->component[component] + g->at + k * VF_LANES);
+    const size_t at = dense ? g->at : g->at & g->mask[component];
+    return vf_load(g->component[component] + at + k * VF_LANES);
 }
 
-OP vf3 load3(const group *g, int component, int k)
+OP vf3 load3(const group *g, bool dense, int component, int k)
 {
-    return (vf3){ load(g, component, k), load(g, component + 1, k), load(g, component + 2, k) };
+    return (vf3){ load(g, dense, component, k), load(g, dense, component + 1, k), load(g, dense, component + 2, k) };
 }
 
 /* What a model uses of it is loaded where it uses it; the rest is dead code. */
-OP surface surface_at(const group *g, const plan_fields *p, int k)
+OP surface surface_at(const group *g, features x, const plan_fields *p, int k)
 {
     surface s;
     s.n = LOAD3(g, NORMAL, k);
@@ -74,7 +78,7 @@ OP surface surface_at(const group *g, const plan_fields *p, int k)
     s.alpha_y = LOAD(g, ALPHA_Y, k);
     s.exponent = LOAD(g, EXPONENT, k);
     s.f0 = LOAD3(g, F0, k);
-    s.f90 = splat(p->f90);
+    s.f90 = x.plain ? splat(1.0f) : splat(p->f90);
     s.f82 = splat3(p->f82);
     s.eta = LOAD3(g, ETA, k);
     s.k = LOAD3(g, K, k);
@@ -83,21 +87,20 @@ OP surface surface_at(const group *g, const plan_fields *p, int k)
     return s;
 }
 
-/* Whether a row is to be had; what a model sees of the group's vector k. */
-#define BUILT(name, properties) (FACET_HAS(name) && (!x.common || (properties) & COMMON))
-#define AT(k) surface_at(g, p, k), t[k]
+/* What a model sees of the group's vector k. */
+#define AT(k) surface_at(g, x, p, k), t[k]
 
-/* nv and what follows from sigma. */
+/* The cosine of the eye's angle; 1 where nothing looks at it. */
+OP void look(group *g, features x)
+{
+    EACH(k) g->nv[k] = x.streams & FACET_STREAM_VIEW ? dot(LOAD3(g, NORMAL, k), LOAD3(g, VIEW, k)) : splat(1.0f);
+}
+
+/* What follows from sigma. */
 OP void prepare(group *g, features x, const job *j)
 {
     const plan_fields *p = j->plan;
-    EACH(k) {
-        g->is_finite[k] = splat(0.0f);
-        g->sum[k] = ZERO3;
-        g->nv[k] = splat(1.0f);
-    }
-    if (x.streams & FACET_STREAM_VIEW) EACH(k) g->nv[k] = dot(LOAD3(g, NORMAL, k), LOAD3(g, VIEW, k));
-    if (!(j->given & FACET_STREAM_SIGMA)) {
+    if (!x.sigma_given) {
         const float *t = p->terms;
         EACH(k) g->terms[k] = (terms){ splat(t[0]), splat(t[1]), splat(t[2]), splat(t[3]) };
         return;
@@ -106,7 +109,7 @@ OP void prepare(group *g, features x, const job *j)
     switch (x.diffuse) {
 #define FACET_DIFFUSE(id, name, word, reads, properties, ...)                                                         \
     case FACET_DIFFUSE_##id:                                                                                          \
-        if (BUILT(name, properties) && ((reads) & FACET_STREAM_SIGMA))                                                \
+        if (FACET_HAS(name) && ((reads) & FACET_STREAM_SIGMA))                                                        \
             EACH(k) g->terms[k] = terms_##name(LOAD(g, SIGMA, k));                                                    \
         break;
 #include "models.def"
@@ -166,7 +169,7 @@ OP vf cone(const facet_light *light, vf3 l)
 
 /* Towards a light with a position: l and what part of its irradiance arrives; both 0 where its distance is 0, or its
  * square no normal float. */
-OP void aim(const group *g, const facet_light *light, int k, vf3 *l, vf *arrives)
+OP void aim(const group *g, features x, const facet_light *light, int k, vf3 *l, vf *arrives)
 {
     vf3 d = sub3(splat3(light->position), LOAD3(g, POSITION, k));
     vf r2 = dot(d, d), inverse = 1.0f / vf_sqrt(r2);
@@ -178,53 +181,75 @@ OP void aim(const group *g, const facet_light *light, int k, vf3 *l, vf *arrives
 }
 
 /* l, and of a light with a position what part of the irradiance arrives. */
-OP void load_direction(group *g, features x, const job *j, const facet_light *light, size_t i, vf3 *l, vf *arrives)
+OP void load_direction(group *g, features x, const job *j, const facet_light *light, vf3 *l, vf *arrives)
 {
-    if (!x.plain && !x.common && light->kind != FACET_LIGHT_DIRECTIONAL)
-        EACH(k) aim(g, light, k, &l[k], &arrives[k]);
+    if (!x.plain && light->kind != FACET_LIGHT_DIRECTIONAL)
+        EACH(k) aim(g, x, light, k, &l[k], &arrives[k]);
     else if (!x.plain && light->direction_of[0])
-        load_light3(j, light->direction_of, i, l, g->is_finite);
+        load_light3(j, light->direction_of, g->at, l, g->is_finite);
     else
         EACH(k) l[k] = splat3(light->direction);
 }
 
-/* Irradiance times visibility, at most FLT_MAX. */
-OP void load_irradiance(group *g, features x, const job *j, const facet_light *light, size_t i, const vf *arrives,
-                        vf3 *E)
+/* Irradiance over pi times visibility, at most FLT_MAX. */
+OP void load_irradiance(group *g, features x, const job *j, const facet_light *light, const vf *arrives, vf3 *E)
 {
     if (!x.plain && light->irradiance_of[0])
-        load_light3(j, light->irradiance_of, i, E, g->is_finite);
+        load_light3(j, light->irradiance_of, g->at, E, g->is_finite);
     else
         EACH(k) E[k] = splat3(light->irradiance);
+    EACH(k) E[k] = scale3(E[k], splat(INV_PI));
     if (x.plain) return;
     if (j->check_lights) EACH(k) E[k] = not_negative3(E[k]);
 
     if (light->visibility) {
         vf seen[VECTORS];
-        load_light(j, light->visibility, i, seen, g->is_finite);
+        load_light(j, light->visibility, g->at, seen, g->is_finite);
         EACH(k) E[k] = scale3(E[k], clamp(seen[k], 0.0f, 1.0f));
     }
-    if (!x.common && light->kind != FACET_LIGHT_DIRECTIONAL)
+    if (light->kind != FACET_LIGHT_DIRECTIONAL)
         EACH(k) E[k] = clamp3(scale3(E[k], arrives[k]), 0.0f, FLT_MAX);
 }
 
 /* nl and nv, where the light and the eye are on the normal's side; nl = 0 elsewhere, NaN where either is not finite. */
-OP void face(const group *g, features x, vf *nl, incidence *t)
+OP void face(const group *g, features x, incidence *t)
 {
-    if (x.two_sided) EACH(k) nl[k] = vf_flip(nl[k], g->nv[k]);
+    if (x.two_sided) EACH(k) t[k].nl = vf_flip(t[k].nl, g->nv[k]);
     EACH(k) {
         vf nv = x.two_sided ? vf_abs(g->nv[k]) : g->nv[k];
-        t[k].nl = vf_where(vf_lt(splat(0.0f), nv), vf_max(splat(0.0f), nl[k])) + (nv - nv);
+        t[k].nl = vf_where(vf_lt(splat(0.0f), nv), vf_max(splat(0.0f), t[k].nl)) + (nv - nv);
         t[k].nv = vf_max(splat(TINY), nv);
     }
 }
 
-OP void diffuse(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *f)
+/* How a light meets the samples. n x w is as long as what of w lies across n, w - (n.w) n; n.w is taken of w, whose
+ * small components nl + nv has lost. */
+OP void meet(const group *g, features x, const vf3 *l, incidence *t)
+{
+    EACH(k) {
+        t[k].l = l[k];
+        t[k].nl = dot(LOAD3(g, NORMAL, k), l[k]);
+        t[k].vl = t[k].hh = t[k].nw = t[k].nxw2 = splat(0.0f);
+    }
+    if (x.streams & FACET_STREAM_VIEW)
+        EACH(k) {
+            vf3 n = LOAD3(g, NORMAL, k), v = LOAD3(g, VIEW, k), w = add3(v, l[k]);
+            vf nw = dot(n, w);
+            vf3 p = { vf_nmad(nw, n.x, w.x), vf_nmad(nw, n.y, w.y), vf_nmad(nw, n.z, w.z) };
+            t[k].vl = dot(v, l[k]);
+            t[k].nw = nw;
+            t[k].nxw2 = dot(p, p);
+            t[k].hh = square(nw) + t[k].nxw2;
+        }
+    face(g, x, t);
+}
+
+OP void diffuse(const group *g, features x, const plan_fields *p, const incidence *t, const vf3 *plus, vf3 *f)
 {
     switch (x.diffuse) {
-#define FACET_DIFFUSE(id, name, word, reads, properties, ...)                                                         \
+#define FACET_DIFFUSE(id, name, ...)                                                                                  \
     case FACET_DIFFUSE_##id:                                                                                          \
-        if (BUILT(name, properties)) EACH(k) f[k] = diffuse_##name(AT(k));                                            \
+        if (FACET_HAS(name)) EACH(k) f[k] = diffuse_##name(AT(k), plus[k]);                                           \
         break;
 #include "models.def"
     }
@@ -233,9 +258,9 @@ OP void diffuse(const group *g, features x, const plan_fields *p, const incidenc
 OP void distribution(const group *g, features x, const plan_fields *p, const incidence *t, vf *D)
 {
     switch (x.distribution) {
-#define FACET_DISTRIBUTION(id, name, word, reads, properties, ...)                                                    \
+#define FACET_DISTRIBUTION(id, name, ...)                                                                             \
     case FACET_DISTRIBUTION_##id:                                                                                     \
-        if (BUILT(name, properties)) EACH(k) D[k] = distribution_##name(AT(k));                                       \
+        if (FACET_HAS(name)) EACH(k) D[k] = distribution_##name(AT(k));                                               \
         break;
 #include "models.def"
     }
@@ -246,7 +271,7 @@ OP void visibility(const group *g, features x, const plan_fields *p, const incid
     switch (x.visibility) {
 #define FACET_VISIBILITY(masking, distribution, properties)                                                           \
     case VISIBILITY_##masking##_##distribution:                                                                       \
-        if (BUILT(masking, properties) && FACET_HAS(distribution))                                                    \
+        if (FACET_HAS(masking) && FACET_HAS(distribution))                                                            \
             EACH(k) V[k] = visibility_##masking##_##distribution(AT(k));                                              \
         break;
 #include "models.def"
@@ -256,12 +281,12 @@ OP void visibility(const group *g, features x, const plan_fields *p, const incid
     }
 }
 
-OP void fresnel(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *F)
+OP void fresnel(const group *g, features x, const plan_fields *p, const incidence *t, const vf *weight, vf3 *F)
 {
     switch (x.fresnel) {
-#define FACET_FRESNEL(id, name, word, reads, properties, ...)                                                         \
+#define FACET_FRESNEL(id, name, ...)                                                                                  \
     case FACET_FRESNEL_##id:                                                                                          \
-        if (BUILT(name, properties)) EACH(k) F[k] = fresnel_##name(AT(k));                                            \
+        if (FACET_HAS(name)) EACH(k) F[k] = fresnel_##name(AT(k), weight[k]);                                         \
         break;
 #include "models.def"
     }
@@ -271,57 +296,74 @@ OP void fresnel(const group *g, features x, const plan_fields *p, const incidenc
  * light into the other: 0 for NaN, FLT_MAX for infinity. What is finite is left as it is. */
 OP vf finite_part(vf a) { return clamp(a, 0.0f, FLT_MAX); }
 OP vf3 finite_part3(vf3 a) { return clamp3(a, 0.0f, FLT_MAX); }
+OP vf finite_or(vf a, vf instead) { return vf_select(vf_eq(a - a, splat(0.0f)), a, instead); }
+OP vf add_finite(vf f, vf E, vf sum) { return finite_or(vf_mad(f, E, sum), finite_part(sum + finite_part(f * E))); }
 
-OP vf add_finite(vf f, vf E, vf sum)
+/* Adds the diffuse part to the specular one. */
+OP void add_diffuse(const group *g, features x, const plan_fields *p, const incidence *t, bool mended, vf3 *f)
 {
-    vf next = vf_mad(f, E, sum);
-    return vf_select(vf_eq(next - next, splat(0.0f)), next, finite_part(sum + finite_part(f * E)));
+    vf3 alone[VECTORS], specular[VECTORS], zero[VECTORS];
+    EACH(k) specular[k] = f[k];
+    diffuse(g, x, p, t, specular, f);
+    if (!mended) return;
+    EACH(k) alone[k] = zero[k] = ZERO3;
+    diffuse(g, x, p, t, zero, alone);
+    EACH(k) {
+        vf3 instead = finite_part3(add3(finite_part3(alone[k]), specular[k]));
+        f[k] = (vf3){ finite_or(f[k].x, instead.x), finite_or(f[k].y, instead.y), finite_or(f[k].z, instead.z) };
+    }
 }
 
-OP void add_light(group *g, features x, const job *j, const facet_light *light, size_t i)
+/* The same where the diffuse part is what F leaves: f = diffuse (1 - F) + F D V. */
+OP void add_coupled(const group *g, features x, const plan_fields *p, const incidence *t, bool mended, const vf *DV,
+                    vf3 *f)
+{
+    vf one[VECTORS];
+    vf3 F[VECTORS], zero[VECTORS];
+    EACH(k) {
+        one[k] = splat(1.0f);
+        F[k] = f[k] = zero[k] = ZERO3;
+    }
+    fresnel(g, x, p, t, one, F);
+    diffuse(g, x, p, t, zero, f);
+    if (mended) EACH(k) f[k] = finite_part3(f[k]);
+    EACH(k) f[k] = mad3(F[k], same3(DV[k]), mul3(f[k], one_minus3(F[k])));
+}
+
+/* pi times the BRDF times nl. */
+OP void reflect(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *f)
 {
     const bool mended = !x.plain && g->mended;
-    const plan_fields *p = j->plan;
-    vf3 l[VECTORS], f[VECTORS], E[VECTORS];
-    vf nl[VECTORS], arrives[VECTORS];
-    incidence t[VECTORS];
-
-    EACH(k) arrives[k] = splat(1.0f);
-    load_direction(g, x, j, light, i, l, arrives);
-    EACH(k) {
-        nl[k] = dot(LOAD3(g, NORMAL, k), l[k]);
-        t[k].l = l[k];
-        t[k].vl = t[k].hh = t[k].nw = t[k].nxw2 = splat(0.0f);
-        f[k] = ZERO3;
-    }
-    if (x.streams & FACET_STREAM_VIEW)
-        EACH(k) {
-            vf3 n = LOAD3(g, NORMAL, k), v = LOAD3(g, VIEW, k), w = add3(v, l[k]), nxw = cross(n, w);
-            t[k].vl = dot(v, l[k]);
-            t[k].hh = dot(w, w);
-            t[k].nw = dot(n, w);
-            t[k].nxw2 = dot(nxw, nxw);
-        }
-    face(g, x, nl, t);
-    diffuse(g, x, p, t, f);
-    if (mended) EACH(k) f[k] = finite_part3(f[k]);
+    EACH(k) f[k] = ZERO3;
     if (SPECULAR_BUILT && x.distribution != FACET_DISTRIBUTION_NONE) {
         vf D[VECTORS], V[VECTORS];
-        vf3 F[VECTORS];
-        EACH(k) {
-            D[k] = V[k] = splat(0.0f);
-            F[k] = ZERO3;
-        }
+        EACH(k) D[k] = V[k] = splat(0.0f);
         distribution(g, x, p, t, D);
         visibility(g, x, p, t, V);
-        fresnel(g, x, p, t, F);
-        if (x.coupled) EACH(k) f[k] = mul3(f[k], one_minus3(F[k]));
         if (x.scaled) EACH(k) V[k] = V[k] * splat(p->scale);
         EACH(k) D[k] = D[k] * V[k];
         if (mended) EACH(k) D[k] = finite_part(D[k]);
-        EACH(k) f[k] = mad3(F[k], same3(D[k]), f[k]);
+        if (x.coupled) {
+            add_coupled(g, x, p, t, mended, D, f);
+            return;
+        }
+        fresnel(g, x, p, t, D, f);
     }
-    load_irradiance(g, x, j, light, i, arrives, E);
+    add_diffuse(g, x, p, t, mended, f);
+}
+
+OP void add_light(group *g, features x, const job *j, const facet_light *light)
+{
+    const bool mended = !x.plain && g->mended;
+    vf3 l[VECTORS], f[VECTORS], E[VECTORS];
+    vf arrives[VECTORS];
+    incidence t[VECTORS];
+
+    EACH(k) arrives[k] = splat(1.0f);
+    load_direction(g, x, j, light, l, arrives);
+    meet(g, x, l, t);
+    reflect(g, x, j->plan, t, f);
+    load_irradiance(g, x, j, light, arrives, E);
     if (!mended) {
         EACH(k) g->sum[k] = mad3(f[k], E[k], g->sum[k]);
         return;
@@ -362,15 +404,15 @@ OP vf3 ambient(const group *g, features x, const job *j, int k)
 
 /* Adds what is there without a light. Returns a bit for each sample that a light's or the destination's value made
  * invalid, and is 0. */
-OP uint32_t add_constants(group *g, features x, const job *j, float *const *radiance)
+OP uint32_t add_constants(group *g, features x, const job *j, float *const *radiance, size_t at)
 {
     uint32_t invalid = 0;
     if (j->has_ambient) EACH(k) g->sum[k] = mad3(LOAD3(g, ALBEDO, k), ambient(g, x, j, k), g->sum[k]);
     if (j->has_emission) EACH(k) g->sum[k] = add3(g->sum[k], splat3(j->plan->emission));
     if (j->flags & FACET_ACCUMULATE)
         EACH(k) {
-            const size_t at = g->at + (size_t)k * VF_LANES;
-            vf3 before = { vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) };
+            const size_t i = at + (size_t)k * VF_LANES;
+            vf3 before = { vf_load(radiance[0] + i), vf_load(radiance[1] + i), vf_load(radiance[2] + i) };
             g->is_finite[k] = g->is_finite[k] + (before.x - before.x) + (before.y - before.y) + (before.z - before.z);
             g->sum[k] = add3(g->sum[k], not_negative3(before));
         }
@@ -385,16 +427,16 @@ OP uint32_t add_constants(group *g, features x, const job *j, float *const *radi
 }
 
 /* Writes the group, clamped to what radiance may be. */
-OP void store(const group *g, bool clamped, float *const *radiance)
+OP void store(const group *g, bool clamped, float *const *radiance, size_t at)
 {
     EACH(k) {
         vf3 out = g->sum[k];
         if (clamped)
             out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
-        const size_t at = g->at + (size_t)k * VF_LANES;
-        vf_store(radiance[0] + at, out.x);
-        vf_store(radiance[1] + at, out.y);
-        vf_store(radiance[2] + at, out.z);
+        const size_t i = at + (size_t)k * VF_LANES;
+        vf_store(radiance[0] + i, out.x);
+        vf_store(radiance[1] + i, out.y);
+        vf_store(radiance[2] + i, out.z);
     }
 }
 

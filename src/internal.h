@@ -61,6 +61,9 @@ enum visibility {
     VISIBILITY_NONE
 };
 
+/* What a material without a specular part has, by names as rows have them. */
+enum { MASKING_none = 0, VISIBILITY_none_none = VISIBILITY_NONE, FRESNEL_none = 0, FRESNEL_READS_none = 0 };
+
 /* Architectures with FACET_ARCH_BEST, and tiers. */
 enum {
     ARCH_COUNT = 1
@@ -92,7 +95,7 @@ typedef struct __attribute__((may_alias)) plan_fields {
     uint8_t arch, tier;                  /* the kernel's id */
     uint8_t diffuse, distribution, masking, visibility, fresnel, convention;
     uint8_t coupled, clamped_alpha, number_from;   /* *_FROM_* */
-    uint8_t needs_view, common, fresnel_properties;   /* common: every model's row is COMMON */
+    uint8_t needs_view, fresnel_properties;
     uint32_t promised;                   /* FACET_STREAM_*: by the material */
     uint32_t needed;                     /* read by the models */
     uint32_t derived;                    /* of these, made by the kernel from ... */
@@ -109,10 +112,9 @@ typedef struct __attribute__((may_alias)) plan_fields {
 /* One call of a kernel. */
 typedef struct job {
     const plan_fields *plan;
-    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else zeros; the kernel
-                                                  moves them along */
-    uint8_t moving[COMPONENT_COUNT];     /* the components of streams that are not uniform */
-    int moving_count;
+    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else zeros */
+    size_t mask[COMPONENT_COUNT];        /* sample i stands at i & mask; the kernel's, of batches that are not dense */
+    bool dense;                          /* every stream has a value per sample, none is derived */
     uint32_t streams;                    /* FACET_STREAM_*: are read: from the batch or, if uniform, from the plan */
     uint32_t uniform;                    /* of these, have one value */
     uint32_t given;                      /* of these, come from the batch */

@@ -1,6 +1,7 @@
 /* The models, once for every architecture and tier: what follows is the mathematics of facet.h's enumerators, over the
  * vector layer that was included before (arch/NAME.h). Each function's formula stands above it, as its source prints
- * it, then as it is evaluated. Names are those of facet.h; `f` is always the BRDF times nl. */
+ * it, then as it is evaluated. Names are those of facet.h. What the functions return is the BRDF times nl and times pi,
+ * which lights' irradiance is divided by: D, too, is pi times the printed one. */
 #ifndef FACET_MODELS_TMPL_H
 #define FACET_MODELS_TMPL_H
 
@@ -8,6 +9,7 @@
 
 typedef struct { vf x, y, z; } vf3;
 
+#define PI   3.14159265f
 #define TINY FLT_MIN                 /* the least denominator */
 
 OP vf3 splat3(const float *a) { return (vf3){ vf_splat(a[0]), vf_splat(a[1]), vf_splat(a[2]) }; }
@@ -68,35 +70,35 @@ typedef struct {
 /* The microfacet's own cosine. */
 OP vf vh(incidence i) { return vf_min(0.5f * vf_sqrt(i.hh), splat(1.0f)); }
 
-/* ---- Diffuse --------------------------------------------------------------------------------------------------- */
+/* ---- Diffuse: added to what comes along -------------------------------------------------------------------------- */
 
 #define NO_TERMS ((terms){ splat(0.0f), splat(0.0f), splat(0.0f), splat(0.0f) })
 OP terms terms_none(vf sigma) { (void)sigma; return NO_TERMS; }
 #define terms_lambert terms_none
 
-OP vf3 diffuse_none(surface s, incidence i) { (void)s, (void)i; return ZERO3; }
+OP vf3 diffuse_none(surface s, incidence i, vf3 plus) { (void)s, (void)i; return plus; }
 
 /* f = albedo/pi. */
-OP vf3 diffuse_lambert(surface s, incidence i) { return scale3(s.albedo, i.nl * INV_PI); }
+OP vf3 diffuse_lambert(surface s, incidence i, vf3 plus) { return mad3(s.albedo, same3(i.nl), plus); }
 
 /* Oren and Nayar 1994, qualitative: f = albedo/pi (A + B max(0, cos(phi_i - phi_r)) sin a tan b), a and b the larger
  * and the smaller of the angles of l and v to n.
  * With s0 = vl - nl nv: cos(phi_i - phi_r) sin a tan b = s0/max(nl, nv), exactly. No angle, no azimuth of a vertical
  * vector, no tangent at grazing; nl s0/max(nl, nv) <= 1. */
-OP vf3 oren_nayar(surface s, incidence i)
+OP vf3 oren_nayar(surface s, incidence i, vf3 plus)
 {
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
     vf sin_tan = not_negative(s0) / vf_max(i.nl, i.nv);
-    return scale3(s.albedo, i.nl * vf_mad(s.terms.B, sin_tan, s.terms.A));
+    return mad3(s.albedo, same3(i.nl * vf_mad(s.terms.B, sin_tan, s.terms.A)), plus);
 }
 
-/* A = 1 - 0.5 s2/(s2 + fold), B = 0.45 s2/(s2 + 0.09), s = sigma; both over pi. */
+/* A = 1 - 0.5 s2/(s2 + fold), B = 0.45 s2/(s2 + 0.09), s = sigma. */
 OP terms oren_nayar_terms(vf sigma, float fold)
 {
     vf s2 = square(sigma);
     terms t = NO_TERMS;
-    t.A = INV_PI - (0.5f * INV_PI) * s2 / (s2 + fold);
-    t.B = (0.45f * INV_PI) * s2 / (s2 + 0.09f);
+    t.A = 1.0f - s2 / (s2 + s2 + 2.0f * fold);
+    t.B = 0.45f * s2 / (s2 + 0.09f);
     return t;
 }
 OP terms terms_oren_nayar(vf sigma) { return oren_nayar_terms(sigma, 0.33f); }
@@ -110,7 +112,7 @@ OP terms terms_oren_nayar_57(vf sigma) { return oren_nayar_terms(sigma, 0.57f); 
  * cos(phi) sin a tan b = s0/cos b as above; tan b = sin b/cos b and tan((a + b)/2) = (sin a + sin b)/(nl + nv) are
  * multiplied by nl before they can overflow. Where b = 0 there is no azimuth, and nothing left for it to multiply. The
  * sum is negative at grazing, with opposite azimuths: 0. */
-OP vf3 oren_nayar_1994(surface s, incidence i, bool interreflection)
+OP vf3 oren_nayar_1994(surface s, incidence i, vf3 plus, bool interreflection)
 {
     vf cos_a = vf_min(i.nl, i.nv), cos_b = vf_max(i.nl, i.nv);
     vf sin_a = vf_sqrt(not_negative(1.0f - square(cos_a))), sin_b = vf_sqrt(not_negative(1.0f - square(cos_b)));
@@ -124,25 +126,26 @@ OP vf3 oren_nayar_1994(surface s, incidence i, bool interreflection)
     vf L1 = vf_mad(s.terms.B, C2 + C3, s.terms.A * i.nl);
     vf L2 = s.terms.C * i.nl * vf_nmad(cos_phi, b2, splat(1.0f));
     if (!interreflection) L2 = splat(0.0f);
-    return not_negative3(mul3(s.albedo, mad3(s.albedo, same3(L2), same3(L1))));
+    return add3(plus, not_negative3(mul3(s.albedo, mad3(s.albedo, same3(L2), same3(L1)))));
 }
-OP vf3 diffuse_oren_nayar_full(surface s, incidence i) { return oren_nayar_1994(s, i, true); }
-OP vf3 diffuse_oren_nayar_direct(surface s, incidence i) { return oren_nayar_1994(s, i, false); }
+OP vf3 diffuse_oren_nayar_full(surface s, incidence i, vf3 plus) { return oren_nayar_1994(s, i, plus, true); }
+OP vf3 diffuse_oren_nayar_direct(surface s, incidence i, vf3 plus) { return oren_nayar_1994(s, i, plus, false); }
 
 OP terms terms_oren_nayar_full(vf sigma)
 {
     vf s2 = square(sigma);
     terms t = terms_oren_nayar(sigma);
-    t.C = (0.17f * INV_PI) * s2 / (s2 + 0.13f);
+    t.C = 0.17f * s2 / (s2 + 0.13f);
     return t;
 }
 #define terms_oren_nayar_direct terms_oren_nayar_full
 
-/* Fujii: f = albedo (A + B s0/t), A = 1/(pi + (pi/2 - 2/3) r), B = r A, t = max(nl, nv) where s0 > 0, else 1. */
+/* Fujii: f = albedo (A + B s0/t), A = 1/(pi + (pi/2 - 2/3) r), B = r A, t = max(nl, nv) where s0 > 0, else 1. Here
+ * times pi: A = 1/(1 + c1 r), c1 = 1/2 - 2/(3 pi). */
 OP terms terms_fujii(vf r)
 {
     terms t = NO_TERMS;
-    t.A = 1.0f / (3.14159265f + 0.904129660f * r);
+    t.A = 1.0f / (1.0f + 0.287793409f * r);
     t.B = r * t.A;
     return t;
 }
@@ -153,7 +156,7 @@ OP vf fujii(surface s, incidence i)
     vf t = vf_select(vf_lt(splat(0.0f), s0), vf_max(i.nl, i.nv), splat(1.0f));
     return i.nl * not_negative(vf_mad(s.terms.B, s0 / t, s.terms.A));
 }
-OP vf3 diffuse_fujii(surface s, incidence i) { return scale3(s.albedo, fujii(s, i)); }
+OP vf3 diffuse_fujii(surface s, incidence i, vf3 plus) { return mad3(s.albedo, same3(fujii(s, i)), plus); }
 
 /* Portsmouth, Kutz, Hill 2024. Single scattering is Fujii's; what scatters more than once adds
  *     albedo_ms/pi (1 - E(nv)) (1 - E(nl))/(1 - Eavg), albedo_ms = albedo^2 Eavg/(1 - albedo (1 - Eavg)),
@@ -168,9 +171,9 @@ OP vf eon_missing(vf mu)
     return not_negative(0.287793409f - G);
 }
 
-OP vf3 diffuse_eon(surface s, incidence i)
+OP vf3 diffuse_eon(surface s, incidence i, vf3 plus)
 {
-    vf3 once = diffuse_fujii(s, i), white = clamp3(s.albedo, 0.0f, 1.0f);
+    vf3 once = diffuse_fujii(s, i, plus), white = clamp3(s.albedo, 0.0f, 1.0f);
     vf more = s.terms.C * i.nl * eon_missing(i.nl) * eon_missing(i.nv);
     vf3 a2 = mul3(white, white);
     return (vf3){ vf_mad(a2.x, more / vf_nmad(white.x, s.terms.D, splat(1.0f)), once.x),
@@ -178,13 +181,12 @@ OP vf3 diffuse_eon(surface s, incidence i)
                   vf_mad(a2.z, more / vf_nmad(white.z, s.terms.D, splat(1.0f)), once.z) };
 }
 
-/* C = A r Eavg/(pi (c1 - c2)), D = 1 - Eavg. */
+/* C = A r Eavg/(c1 - c2), D = 1 - Eavg. */
 OP terms terms_eon(vf r)
 {
     terms t = terms_fujii(r);
-    vf A = 1.0f / (1.0f + 0.287793409f * r);
-    t.C = (INV_PI / 0.215305197f) * square(A) * r * (1.0f + 0.0724882125f * r);
-    t.D = 0.215305197f * A * r;
+    t.C = (1.0f / 0.215305197f) * t.A * t.B * (1.0f + 0.0724882125f * r);
+    t.D = 0.215305197f * t.B;
     return t;
 }
 
@@ -197,7 +199,7 @@ OP vf distribution_none(surface s, incidence i) { (void)s, (void)i; return splat
 OP vf distribution_ggx(surface s, incidence i)
 {
     vf q = s.alpha * i.hh / vf_max(splat(TINY), vf_mad(s.alpha2, square(i.nw), i.nxw2));
-    return square(q) * INV_PI;
+    return square(q);
 }
 
 /* The tangent frame's components of a vector: along the tangent x, along y = n x tangent. */
@@ -212,13 +214,13 @@ OP vf distribution_ggx_anisotropic(surface s, incidence i)
     vf area = s.alpha * s.alpha_y;
     vf slope = vf_mad(s.alpha_y * w.x, s.alpha_y * w.x, square(s.alpha * w.y));
     vf q = area * i.hh / vf_max(splat(TINY), vf_mad(area * i.nw, area * i.nw, slope));
-    return area * square(q) * INV_PI;
+    return area * square(q);
 }
 
 /* exp(-slope)/(pi area nh^4), 1/nh^2 = 1 + tan^2. Where tan^2 > 1e18 the exponential is 0 anyway. */
 OP vf beckmann(vf tan2, vf slope, vf area)
 {
-    return exp_minus(slope) * square(1.0f + vf_min(tan2, splat(1e18f))) / (area * 3.14159265f);
+    return exp_minus(slope) * square(1.0f + vf_min(tan2, splat(1e18f))) / area;
 }
 
 /* Beckmann 1963; Cook and Torrance 1981: D = exp(-tan^2/alpha^2)/(pi alpha^2 nh^4), tan^2 = |n x w|^2/(n.w)^2. */
@@ -244,27 +246,28 @@ OP vf lobe(surface s, vf sin2, vf cos2)
 }
 
 /* Phong 1975: (r.v)^exponent, r = 2 nl n - l, 0 where r.v <= 0. */
-OP vf distribution_phong(surface s, incidence i)
+OP vf phong(surface s, incidence i)
 {
     vf3 r = sub3(scale3(s.n, 2.0f * dot(s.n, i.l)), i.l), rxv = cross(r, s.v);
     vf rv = dot(r, s.v);
     return vf_where(vf_lt(splat(0.0f), rv), lobe(s, dot(rxv, rxv), square(rv)));
 }
+OP vf distribution_phong(surface s, incidence i) { return phong(s, i) * PI; }
 
 /* Lafortune and Willems 1994: times (exponent + 2)/(2 pi). */
 OP vf distribution_phong_modified(surface s, incidence i)
 {
-    return distribution_phong(s, i) * ((s.exponent + 2.0f) * (0.5f * INV_PI));
+    return phong(s, i) * (0.5f * s.exponent + 1.0f);
 }
 
 /* Blinn 1977: nh^exponent. */
-OP vf distribution_blinn_phong(surface s, incidence i) { return lobe(s, i.nxw2, square(i.nw)); }
+OP vf distribution_blinn_phong(surface s, incidence i) { return lobe(s, i.nxw2, square(i.nw)) * PI; }
 
 /* Times (m + 2)(m + 4)/(8 pi (2^(-m/2) + m)), m = exponent: white reflects all of what falls in along the normal. */
 OP vf distribution_blinn_phong_normalised(surface s, incidence i)
 {
     vf m = s.exponent, power = exp_minus(m * 0.346573590f);
-    return distribution_blinn_phong(s, i) * ((m + 2.0f) * (m + 4.0f) * (0.125f * INV_PI) / (power + m));
+    return lobe(s, i.nxw2, square(i.nw)) * ((m + 2.0f) * (m + 4.0f) * 0.125f / (power + m));
 }
 
 /* ---- Masking ---- Smith's G1(mu) = 1/(1 + Lambda), as mu/G1 = mu (1 + Lambda): a function of mu and
@@ -340,7 +343,8 @@ OP vf ggx_slope(surface s, vf mu)
 /* V = 0.5 nl/(nl sqrt(nv^2 (1 - alpha^2) + alpha^2) + nv sqrt(nl^2 (1 - alpha^2) + alpha^2)) <= 1/(2 alpha). */
 OP vf visibility_smith_correlated_ggx(surface s, incidence i)
 {
-    return 0.5f * i.nl / vf_mad(i.nl, ggx_slope(s, i.nv), i.nv * ggx_slope(s, i.nl));
+    vf sum = vf_mad(i.nl, ggx_slope(s, i.nv), i.nv * ggx_slope(s, i.nl));
+    return i.nl / (sum + sum);
 }
 
 /* Walter et al. 2007, eq. 23 and 34: G1(mu) = 2/(1 + sqrt(1 + alpha^2 tan^2)). */
@@ -381,20 +385,20 @@ OP vf visibility_hammon_ggx(surface s, incidence i)
     return 0.5f * i.nl / vf_mad(s.alpha, i.nl + i.nv, smooth * (1.0f - s.alpha));
 }
 
-/* ---- Fresnel: at vh ---------------------------------------------------------------------------------------------- */
+/* ---- Fresnel: at vh, times what it weighs ------------------------------------------------------------------------ */
 
-OP vf3 fresnel_one(surface s, incidence i) { (void)s, (void)i; return same3(splat(1.0f)); }
+OP vf3 fresnel_one(surface s, incidence i, vf weight) { (void)s, (void)i; return same3(weight); }
 
-OP vf3 fresnel_constant(surface s, incidence i) { (void)i; return s.f0; }
+OP vf3 fresnel_constant(surface s, incidence i, vf weight) { (void)i; return scale3(s.f0, weight); }
 
 /* 1 - vh, below 0 by rounding alone. */
 OP vf one_minus_vh(incidence i) { return vf_abs(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f))); }
 
 /* Schlick 1994: F = f0 + (f90 - f0)(1 - vh)^5. */
-OP vf3 fresnel_schlick(surface s, incidence i)
+OP vf3 fresnel_schlick(surface s, incidence i, vf weight)
 {
-    vf c5 = pow5(one_minus_vh(i)), a = 1.0f - c5, b = s.f90 * c5;
-    return (vf3){ vf_mad(s.f0.x, a, b), vf_mad(s.f0.y, a, b), vf_mad(s.f0.z, a, b) };
+    vf grazing = weight * pow5(one_minus_vh(i)), normal = weight - grazing;
+    return mad3(s.f0, same3(normal), same3(s.f90 * grazing));
 }
 
 /* Kutz et al. 2021: F = schlick(vh) - b vh (1 - vh)^6, b such that F = f82 where vh = 1/7; within [0, 1]. */
@@ -404,11 +408,12 @@ OP vf f82_corrected(vf f0, vf f82, vf c5, vf bump)
     vf there = vf_mad(f0, splat(1.0f - 0x1.d9c4bp-2f), splat(0x1.d9c4bp-2f));         /* (6/7)^5 */
     return clamp(vf_nmad(there - f82, bump, schlick), 0.0f, 1.0f);
 }
-OP vf3 fresnel_schlick_f82(surface s, incidence i)
+OP vf3 fresnel_schlick_f82(surface s, incidence i, vf weight)
 {
     vf c = vf_min(one_minus_vh(i), splat(1.0f)), c5 = pow5(c), bump = vh(i) * c5 * c * 17.6513846f;   /* 7 (7/6)^6 */
-    return (vf3){ f82_corrected(s.f0.x, s.f82.x, c5, bump), f82_corrected(s.f0.y, s.f82.y, c5, bump),
-                  f82_corrected(s.f0.z, s.f82.z, c5, bump) };
+    vf3 F = { f82_corrected(s.f0.x, s.f82.x, c5, bump), f82_corrected(s.f0.y, s.f82.y, c5, bump),
+              f82_corrected(s.f0.z, s.f82.z, c5, bump) };
+    return scale3(F, weight);
 }
 
 /* Cook and Torrance 1981, with c = vh, eta relative to the medium outside: g^2 = eta^2 - 1 + c^2,
@@ -423,11 +428,12 @@ OP vf dielectric(vf eta, vf o, vf c, vf parallel)
     vf F = square(difference / sum) * vf_mad(parallel, square(p), 1.0f - parallel);
     return vf_select(vf_lt(g2, splat(0.0f)), splat(1.0f), vf_min(F, splat(1.0f)));
 }
-OP vf3 fresnel_dielectric(surface s, incidence i)
+OP vf3 fresnel_dielectric(surface s, incidence i, vf weight)
 {
     vf c = vh(i);
-    return (vf3){ dielectric(s.eta.x, s.eta_outside, c, s.parallel), dielectric(s.eta.y, s.eta_outside, c, s.parallel),
-                  dielectric(s.eta.z, s.eta_outside, c, s.parallel) };
+    vf3 F = { dielectric(s.eta.x, s.eta_outside, c, s.parallel), dielectric(s.eta.y, s.eta_outside, c, s.parallel),
+              dielectric(s.eta.z, s.eta_outside, c, s.parallel) };
+    return scale3(F, weight);
 }
 
 /* Born and Wolf, ch. 14, with c = vh, sin^2 = 1 - c^2, times the outer index o:
@@ -453,12 +459,13 @@ OP vf conductor(vf eta, vf k, vf o, vf c, vf parallel)
     vf ratio = vf_mad(minus, minus, bc2) / vf_max(splat(TINY), vf_mad(plus, plus, bc2));
     return vf_min(Rs * vf_mad(parallel, ratio, 1.0f - parallel), splat(1.0f));
 }
-OP vf3 fresnel_conductor(surface s, incidence i)
+OP vf3 fresnel_conductor(surface s, incidence i, vf weight)
 {
     vf c = vh(i);
-    return (vf3){ conductor(s.eta.x, s.k.x, s.eta_outside, c, s.parallel),
-                  conductor(s.eta.y, s.k.y, s.eta_outside, c, s.parallel),
-                  conductor(s.eta.z, s.k.z, s.eta_outside, c, s.parallel) };
+    vf3 F = { conductor(s.eta.x, s.k.x, s.eta_outside, c, s.parallel),
+              conductor(s.eta.y, s.k.y, s.eta_outside, c, s.parallel),
+              conductor(s.eta.z, s.k.z, s.eta_outside, c, s.parallel) };
+    return scale3(F, weight);
 }
 
 /* ---- What one parameter says of another: a NaN, that it is not known -------------------------------------------- */

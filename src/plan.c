@@ -317,15 +317,6 @@ static void compile_specular(plan_fields *p, const facet_material *m)
     p->visibility = (uint8_t)find_visibility((int)m->specular.masking, (int)m->specular.model);
 }
 
-static bool has_common_models(const plan_fields *p)
-{
-    int common = diffuse_rows[p->diffuse].properties;
-    if (p->distribution != FACET_DISTRIBUTION_NONE)
-        common &= distribution_rows[p->distribution].properties & visibility_rows[p->visibility].properties
-            & fresnel_rows[p->fresnel].properties;
-    return common & COMMON;
-}
-
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
 static __attribute__((noinline)) facet_status compile(facet_plan *out, const facet_material *m, facet_target target,
                                                       facet_error *error)
@@ -354,7 +345,6 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
         p->eta_outside = 0.0f;
     forget_numbers(p);
     p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
-    p->common = has_common_models(p);
     store3(p->emission, not_negative3(splat3(m->emission)));
     return FACET_OK;
 }

@@ -123,13 +123,10 @@ static inline __attribute__((always_inline)) bool take_stream(job *j, uint32_t b
     const bool from_batch = !number || j->plan->promised & bit;
     if (from_batch) j->given |= bit;
     else j->uniform |= bit;
-    const bool moving = !(j->uniform & bit);
     for (int c = 0; c < components; c++) {
         if (from_batch && !given[c]) return false;
         j->component[first + c] = from_batch ? given[c] : number + c;
-        if (moving) j->moving[j->moving_count + c] = (uint8_t)(first + c);
     }
-    if (moving) j->moving_count += components;
     return true;
 }
 
@@ -154,7 +151,6 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
     const uint32_t taken = j->streams | p->promised;
     j->uniform = b->uniform;
     j->given = 0;
-    j->moving_count = 0;
     for (int c = 0; c < COMPONENT_COUNT; c++) j->component[c] = zeros;
 #define FACET_STREAM(id, field, components, owner, ...)                                                               \
     if (taken & FACET_STREAM_##id                                                                                     \
@@ -164,6 +160,7 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
 #include "streams.def"
     j->uniform &= j->streams;
     j->given &= j->streams;
+    j->dense = !(j->uniform | p->derived);
     return FACET_OK;
 }
 

@@ -2,7 +2,7 @@
  * Included after arch/NAME.h, with KERNEL defined as the function's name. */
 #include "group.tmpl.h"
 
-/* Samples in a block: pointers and coverage are set up a block at a time. A uniform value fills a block of its own. */
+/* Samples in a block, where coverage is looked at, or parameters are derived from others, a block at a time. */
 #define BLOCK (VF_LANES > 1 ? 64 : 16)
 
 _Static_assert(BLOCK % GROUP == 0 && BLOCK % 8 == 0 && BLOCK <= 64, "a bit a sample of a block fits into a uint64_t");
@@ -12,13 +12,14 @@ _Static_assert(BLOCK % GROUP == 0 && BLOCK % 8 == 0 && BLOCK <= 64, "a bit a sam
 /* A bit for each of 1 <= n <= 64 samples. */
 #define ALL_SAMPLES(n) (~(uint64_t)0 >> (64 - (n)))
 
-/* Up to BLOCK samples of a batch, or one group that was mended. */
+/* Up to BLOCK samples of a batch, all of one that needs no blocks, or one group that was mended. */
 typedef struct {
     const float *const *component;
+    const size_t *mask;
     float *radiance[3];
     size_t i, count;                     /* its first sample in the batch; its samples */
-    uint64_t covered;                    /* a bit a sample */
-    bool mended;
+    uint64_t covered;                    /* a bit a sample, where not the whole block is */
+    bool whole, mended;
 } block;
 
 /* The bits of a vector's three components, together. */
@@ -75,43 +76,96 @@ OP vf odd_values(const group *g, features x, const plan_fields *p, int k)
 /* Where the samples from `at` on cease to be covered. */
 OP size_t covered_end(const block *b, size_t at)
 {
-    if (b->covered == ALL_SAMPLES(b->count)) return b->count;
+    if (b->whole || b->covered == ALL_SAMPLES(b->count)) return b->count;
     while (at < b->count && b->covered >> at & 1) at++;
     return at;
 }
 
+OP group open_group(const block *b, size_t at)
+{
+    group g;
+    g.component = b->component;
+    g.mask = b->mask;
+    g.at = b->i + at;
+    g.mended = b->mended;
+    EACH(k) {
+        g.is_finite[k] = splat(0.0f);
+        g.sum[k] = ZERO3;
+    }
+    return g;
+}
+
+/* Whether the group must be mended before it can be written. */
+OP bool is_odd(const group *g, const vf *odd)
+{
+    uint32_t mend = 0;
+    EACH(k) mend |= vf_signs(vf_or(odd[k], above(largest(g->sum[k]), FLT_MAX)));
+    return __builtin_expect(mend && !g->mended, 0);
+}
+
+/* Samples that a light or the destination made invalid: how many, and a bit for each of the last group's. */
+typedef struct { size_t count; uint32_t last; } invalids;
+
 /* Shades the block's groups from `at` on, as long as they are whole, covered and in no need of mending. Returns where
- * it stopped; sets in *invalid the bits of the samples that a light or the destination made invalid. */
-OP size_t shade_block(const job *j, features x, const block *b, size_t at, uint64_t *invalid)
+ * it stopped. */
+OP size_t shade_block(const job *j, features x, const block *b, size_t at, invalids *invalid)
 {
     const size_t end = covered_end(b, at);
     for (; at + GROUP <= end; at += GROUP) {
         vf odd[VECTORS];
-        group g;
-        g.component = b->component;
-        g.at = at;
-        g.mended = b->mended;
+        group g = open_group(b, at);
         EACH(k) odd[k] = odd_values(&g, x, j->plan, k);
+        look(&g, x);
         prepare(&g, x, j);
-        const size_t lights = x.plain ? 1 : j->light_count;
-        for (size_t light = 0; light < lights; light++) add_light(&g, x, j, &j->lights[light], b->i + at);
-        const uint64_t bad = x.plain ? 0 : add_constants(&g, x, j, b->radiance);
-
-        uint32_t mend = 0;
-        EACH(k) mend |= vf_signs(vf_or(odd[k], above(largest(g.sum[k]), FLT_MAX)));
-        if (__builtin_expect(mend && !b->mended, 0)) break;
-        *invalid |= bad << at;
-        store(&g, b->mended, b->radiance);
+        for (size_t i = 0; i < j->light_count; i++) add_light(&g, x, j, &j->lights[i]);
+        uint32_t bad = add_constants(&g, x, j, b->radiance, at);
+        if (is_odd(&g, odd)) break;
+        store(&g, b->mended, b->radiance, at);
+        invalid->last = bad;
+        for (; bad; bad &= bad - 1) invalid->count++;
     }
     return at;
 }
 
-typedef size_t block_shader(const job *, const block *, size_t at, uint64_t *invalid);
+/* The same for one plain light: how it meets a group is found beside what the group before reflects, so that one's
+ * arithmetic fills the other's latencies. */
+OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
+{
+    const size_t end = covered_end(b, at);
+    const facet_light *light = j->lights;
+    vf3 l[VECTORS], E[VECTORS];
+    incidence t[VECTORS], next[VECTORS];
+    if (at + GROUP > end) return at;
+
+    EACH(k) l[k] = splat3(light->direction);
+    EACH(k) E[k] = scale3(splat3(light->irradiance), splat(INV_PI));
+    group g = open_group(b, at), h = g;
+    look(&g, x);
+    meet(&g, x, l, t);
+    for (; at + GROUP <= end; at += GROUP) {
+        vf odd[VECTORS];
+        h.at = at + 2 * GROUP <= end ? g.at + GROUP : g.at;
+        look(&h, x);
+        meet(&h, x, l, next);
+        EACH(k) odd[k] = odd_values(&g, x, j->plan, k);
+        prepare(&g, x, j);
+        reflect(&g, x, j->plan, t, g.sum);
+        EACH(k) g.sum[k] = mul3(g.sum[k], E[k]);
+        if (is_odd(&g, odd)) break;
+        store(&g, false, b->radiance, at);
+        g.at = h.at;
+        EACH(k) t[k] = next[k];
+    }
+    return at;
+}
+
+typedef size_t block_shader(const job *, const block *, size_t at, invalids *);
 
 /* What the models and lights read, from the batch, the plan or what the kernel made. */
 OP uint32_t streams_read(const job *j) { return (j->streams & ~j->plan->sources) | j->plan->needed; }
 
-OP size_t shade_features(const job *j, bool common, const block *b, size_t at, uint64_t *invalid)
+/* Any block of any batch. */
+static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, size_t at, invalids *invalid)
 {
     const plan_fields *p = j->plan;
     const features x = {
@@ -123,53 +177,63 @@ OP size_t shade_features(const job *j, bool common, const block *b, size_t at, u
         .coupled = p->coupled,
         .scaled = p->scale != 1.0f,
         .two_sided = j->flags & FACET_TWO_SIDED,
-        .common = common,
+        .sigma_given = j->given & FACET_STREAM_SIGMA,
     };
     return shade_block(j, x, b, at, invalid);
 }
 
-/* Any block of any batch; one of common models and lights. */
-static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, size_t at, uint64_t *invalid)
-{
-    return shade_features(j, false, b, at, invalid);
-}
-
-static __attribute__((noinline)) size_t shade_common(const job *j, const block *b, size_t at, uint64_t *invalid)
-{
-    return shade_features(j, true, b, at, invalid);
-}
-
-/* The rows of special.def: the same body with constants, for plain batches of one-sided samples. */
-#define FACET_SPECIAL(diffuse_, distribution_, masking, fresnel_, coupled_)                                           \
-    static __attribute__((noinline)) size_t shade_##diffuse_##_##distribution_##_##masking##_##fresnel_##_##coupled_( \
-        const job *j, const block *b, size_t at, uint64_t *invalid)                                                   \
+/* The rows of special.def: the same body with constants, for any batch and for plain ones. */
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_)                                     \
+    OP features features_##name(bool sigma_given)                                                                     \
     {                                                                                                                 \
-        const features x = { .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                            \
-                             .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                        \
-                             .visibility = VISIBILITY_##masking##_##distribution_,                                    \
-                             .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                            \
-                             .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_ |          \
-                                        DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,                \
-                             .coupled = coupled_, .plain = true };                                                    \
+        return (features){ .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                              \
+                           .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                          \
+                           .visibility = (enum visibility)VISIBILITY_##masking##_##distribution_,                     \
+                           .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                              \
+                           .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_              \
+                                    | DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,                  \
+                           .coupled = coupled_, .sigma_given = sigma_given };                                         \
+    }                                                                                                                 \
+    static __attribute__((noinline)) size_t shade_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
+    {                                                                                                                 \
+        features x = features_##name(j->given & FACET_STREAM_SIGMA);                                                  \
+        x.streams |= streams_read(j);                                                                                 \
+        x.scaled = j->plan->scale != 1.0f;                                                                            \
+        x.two_sided = j->flags & FACET_TWO_SIDED;                                                                     \
         return shade_block(j, x, b, at, invalid);                                                                     \
+    }                                                                                                                 \
+    static __attribute__((noinline)) size_t plain_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
+    {                                                                                                                 \
+        const bool reads_sigma = DIFFUSE_READS_##diffuse_ & FACET_STREAM_SIGMA;                                       \
+        features x = features_##name(reads_sigma);                                                                    \
+        (void)invalid;                                                                                                \
+        x.plain = x.dense = true;                                                                                     \
+        if (j->dense) return shade_plain(j, x, b, at);                                                                \
+        x.dense = false;                                                                                              \
+        if (!reads_sigma || j->given & FACET_STREAM_SIGMA) return shade_plain(j, x, b, at);                           \
+        x.sigma_given = false;                                                                                        \
+        return shade_plain(j, x, b, at);                                                                              \
     }
 #include "special.def"
 
-static block_shader *choose_shader(const job *j)
+/* What shades a batch, and whether it is a plain one. */
+typedef struct { block_shader *shade; bool plain; } choice;
+
+OP choice choose_shader(const job *j)
 {
     const plan_fields *p = j->plan;
-    block_shader *generic = p->common && !(j->streams & FACET_STREAM_POSITION) ? shade_common : shade_any;
     const bool plain = j->light_count == 1 && !j->check_lights && !j->has_ambient && !j->has_emission && !j->invalid
-                       && p->scale == 1.0f && j->streams & FACET_STREAM_VIEW
+                       && p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f)
                        && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
-    if (!plain) return generic;
-#define FACET_SPECIAL(diffuse_, distribution_, masking, fresnel_, coupled_)                                           \
+    if (!(j->streams & FACET_STREAM_VIEW)) return (choice){ shade_any, false };
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_)                                     \
     if (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                  \
-        && p->diffuse == DIFFUSE_##diffuse_ && p->visibility == VISIBILITY_##masking##_##distribution_                \
-        && p->fresnel == FRESNEL_##fresnel_ && p->coupled == coupled_)                                                \
-        return shade_##diffuse_##_##distribution_##_##masking##_##fresnel_##_##coupled_;
+        && p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                        \
+        && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
+        && p->coupled == coupled_)                                                                                    \
+        return (choice){ plain ? plain_##name : shade_##name, plain };
 #include "special.def"
-    return generic;
+    return (choice){ shade_any, false };
 }
 
 /* ---- What keeps the mathematics above free of special cases --------------------------------------------------------
@@ -182,11 +246,19 @@ static const struct { uint8_t first, components; } streams[STREAM_COUNT] = {
 #include "streams.def"
 };
 
+/* Where the values of component c begin for sample i. */
+OP const float *values_at(const job *j, int c, size_t i)
+{
+    return j->component[c] + (j->dense ? i : i & j->mask[c]);
+}
+
 /* A component of b's samples at `at`, with zeros behind the end, clamped to its domain. */
-static void mend_component(const block *b, int c, size_t at, float low, float high, float *values, vf *is_finite)
+static void mend_component(const job *j, const block *b, int c, size_t at, float low, float high, float *values,
+                           vf *is_finite)
 {
     const size_t count = b->count - at < GROUP ? b->count - at : GROUP;
-    for (size_t lane = 0; lane < GROUP; lane++) values[lane] = lane < count ? b->component[c][at + lane] : 0.0f;
+    const float *from = values_at(j, c, b->i + at);
+    for (size_t lane = 0; lane < GROUP; lane++) values[lane] = lane < count ? from[lane] : 0.0f;
     EACH(k) {
         vf a = vf_load(values + k * VF_LANES);
         is_finite[k] = is_finite[k] + (a - a);
@@ -221,7 +293,7 @@ static uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GR
     for (uint32_t left = read; left; left &= left - 1) {
         const int stream = __builtin_ctz(left), first = streams[stream].first;
         for (int c = first; c < first + streams[stream].components; c++)
-            mend_component(b, c, at, domain[stream].low, domain[stream].high, values[c], is_finite);
+            mend_component(j, b, c, at, domain[stream].low, domain[stream].high, values[c], is_finite);
     }
     uint32_t invalid = zero_vectors(values, COMPONENT_NORMAL);
     if (read & FACET_STREAM_TANGENT) invalid |= zero_vectors(values, COMPONENT_TANGENT);
@@ -229,32 +301,39 @@ static uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GR
     return invalid;
 }
 
-/* One group, with care. Returns a bit for each sample that is covered and invalid. */
-static __attribute__((noinline)) uint32_t shade_mended(const job *j, const block *b, size_t at, block_shader *shader)
+/* One group, with care. Returns how many samples are covered and invalid. */
+static __attribute__((noinline)) size_t shade_mended(const job *j, const block *b, size_t at)
 {
-    const uint32_t covered = (uint32_t)(b->covered >> at) & LANES(GROUP);
+    static const size_t first[COMPONENT_COUNT];
+    const size_t left = b->count - at;
+    const uint32_t here = LANES(left < GROUP ? left : GROUP);
+    const uint32_t covered = b->whole ? here : (uint32_t)(b->covered >> at) & here;
     if (!covered) return 0;
 
     float values[COMPONENT_COUNT][GROUP], result[3][GROUP];
     const float *component[COMPONENT_COUNT];
-    uint64_t invalid = mend(j, b, at, values);
+    uint32_t invalid = mend(j, b, at, values);
+    invalids more = { 0, 0 };
     block m;
     m.i = b->i + at;
     m.count = GROUP;
-    m.covered = LANES(GROUP);
-    m.mended = true;
+    m.whole = m.mended = true;
     for (int c = 0; c < COMPONENT_COUNT; c++) component[c] = values[c];
     m.component = component;
+    m.mask = first;
     for (int c = 0; c < 3; c++) {
         m.radiance[c] = result[c];
         for (size_t lane = 0; lane < GROUP; lane++)
             result[c][lane] = j->flags & FACET_ACCUMULATE && covered >> lane & 1 ? b->radiance[c][at + lane] : 0.0f;
     }
-    shader(j, &m, 0, &invalid);
+    shade_any(j, &m, 0, &more);
+    invalid |= more.last;
     for (int c = 0; c < 3; c++)
         for (size_t lane = 0; lane < GROUP; lane++)
             if (covered >> lane & 1) b->radiance[c][at + lane] = invalid >> lane & 1 ? 0.0f : result[c][lane];
-    return (uint32_t)invalid & covered;
+    size_t count = 0;
+    for (invalid &= covered; invalid; invalid &= invalid - 1) count++;
+    return count;
 }
 
 /* ---- A batch ---------------------------------------------------------------------------------------------------- */
@@ -262,7 +341,6 @@ static __attribute__((noinline)) uint32_t shade_mended(const job *j, const block
 /* A block's coverage; reads no byte past the batch's. */
 OP uint64_t covered_samples(const job *j, size_t i, size_t count)
 {
-    if (!j->coverage) return ALL_SAMPLES(count);
     uint64_t bits = 0;
     for (size_t k = 0; k < count; k += 8) bits |= (uint64_t)j->coverage[(i + k) >> 3] << k;
     return bits & ALL_SAMPLES(count);
@@ -272,9 +350,9 @@ OP uint64_t covered_samples(const job *j, size_t i, size_t count)
 typedef float block_values[COMPONENT_COUNT][BLOCK];
 
 /* The value of a stream that another is derived from, in its domain; NaN where it is not finite. Zeros past the end. */
-OP vf source(const block *b, int component, size_t at, float low, float high)
+OP vf source(const job *j, const block *b, int component, size_t at, float low, float high)
 {
-    const float *from = b->component[component] + at;
+    const float *from = values_at(j, component, b->i + at);
     float padded[GROUP];
     if (b->count - at < VF_LANES) {
         pad(from, b->count - at, padded);
@@ -284,111 +362,113 @@ OP vf source(const block *b, int component, size_t at, float low, float high)
     return clamp(a, low, high) + (a - a);
 }
 
-#define SOURCE_1(id, low, high) source(b, COMPONENT_##id, at, low, high)
+#define SOURCE_1(id, low, high) source(j, b, COMPONENT_##id, at, low, high)
 #define SOURCE_3(id, low, high)                                                                                       \
-    (vf3){ source(b, COMPONENT_##id, at, low, high), source(b, COMPONENT_##id + 1, at, low, high),                    \
-           source(b, COMPONENT_##id + 2, at, low, high) }
+    (vf3){ source(j, b, COMPONENT_##id, at, low, high), source(j, b, COMPONENT_##id + 1, at, low, high),                    \
+           source(j, b, COMPONENT_##id + 2, at, low, high) }
 #define VALUE_1 vf
 #define VALUE_3 vf3
 #define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
-    OP VALUE_##components source_##id(const plan_fields *p, const block *b, size_t at)                                \
+    OP VALUE_##components source_##id(const job *j, const block *b, size_t at)                                        \
     {                                                                                                                 \
+        const plan_fields *p = j->plan;                                                                               \
         (void)p;                                                                                                      \
         return SOURCE_##components(id, low, high);                                                                    \
     }
 #include "streams.def"
 
-/* Where parameters that follow from others go. */
-typedef struct { const float **component; float (*values)[BLOCK]; } place;
-
-OP void keep_derived(place to, int component, size_t at, vf a)
+OP void store3(block_values values, int component, size_t at, vf3 a)
 {
-    vf_store(to.values[component] + at, a);
-    to.component[component] = to.values[component];
+    vf_store(values[component] + at, a.x);
+    vf_store(values[component + 1] + at, a.y);
+    vf_store(values[component + 2] + at, a.z);
 }
 
-OP void keep_derived3(place to, int component, size_t at, vf3 a)
+OP vf derived_roughness(const job *j, const block *b, size_t at)
 {
-    keep_derived(to, component, at, a.x);
-    keep_derived(to, component + 1, at, a.y);
-    keep_derived(to, component + 2, at, a.z);
+    if (j->plan->convention == FACET_CONVENTION_METALLIC_ROUGHNESS) return source_ROUGHNESS(j, b, at);
+    return 1.0f - source_GLOSSINESS(j, b, at);
 }
 
-OP vf derived_roughness(const plan_fields *p, const block *b, size_t at)
+OP vf3 derived_f0(const job *j, const block *b, size_t at)
 {
-    if (p->convention == FACET_CONVENTION_METALLIC_ROUGHNESS) return source_ROUGHNESS(p, b, at);
-    return 1.0f - source_GLOSSINESS(p, b, at);
-}
-
-OP vf3 derived_f0(const plan_fields *p, const block *b, size_t at)
-{
-    if (p->convention == FACET_CONVENTION_METALLIC_ROUGHNESS)
-        return f0_of_base(source_BASE(p, b, at), source_METALLIC(p, b, at), source_SPECULAR_LEVEL(p, b, at));
-    vf3 eta = source_ETA(p, b, at), k = source_K(p, b, at);
-    vf o = splat(p->eta_outside);
+    if (j->plan->convention == FACET_CONVENTION_METALLIC_ROUGHNESS)
+        return f0_of_base(source_BASE(j, b, at), source_METALLIC(j, b, at), source_SPECULAR_LEVEL(j, b, at));
+    vf3 eta = source_ETA(j, b, at), k = source_K(j, b, at);
+    vf o = splat(j->plan->eta_outside);
     return (vf3){ f0_of_index(eta.x, k.x, o), f0_of_index(eta.y, k.y, o), f0_of_index(eta.z, k.z, o) };
 }
 
-OP vf3 derived_eta(const plan_fields *p, const block *b, size_t at)
+OP vf3 derived_eta(const job *j, const block *b, size_t at)
 {
-    vf3 f0 = source_F0(p, b, at);
-    vf o = splat(p->eta_outside);
+    vf3 f0 = source_F0(j, b, at);
+    vf o = splat(j->plan->eta_outside);
     return (vf3){ eta_in(f0.x, o), eta_in(f0.y, o), eta_in(f0.z, o) };
 }
 
 /* Parameters that follow from other streams, a block of them. Out of the way of materials that have none. */
-static __attribute__((noinline)) void derive(const plan_fields *p, const block *b, place to)
+static __attribute__((noinline)) void derive(const job *j, const block *b, block_values values)
 {
+    const plan_fields *p = j->plan;
     for (size_t at = 0; at < b->count; at += VF_LANES) {
         if (p->derived & FACET_STREAM_ALBEDO)
-            keep_derived3(to, COMPONENT_ALBEDO, at, albedo_of_base(source_BASE(p, b, at), source_METALLIC(p, b, at)));
+            store3(values, COMPONENT_ALBEDO, at, albedo_of_base(source_BASE(j, b, at), source_METALLIC(j, b, at)));
         if (p->derived & FACET_STREAM_ALPHA)
-            keep_derived(to, COMPONENT_ALPHA, at, alpha_of_roughness(derived_roughness(p, b, at)));
-        if (p->derived & FACET_STREAM_ALPHA_Y) keep_derived(to, COMPONENT_ALPHA_Y, at, source_ALPHA(p, b, at));
-        if (p->derived & FACET_STREAM_F0) keep_derived3(to, COMPONENT_F0, at, derived_f0(p, b, at));
-        if (p->derived & FACET_STREAM_ETA) keep_derived3(to, COMPONENT_ETA, at, derived_eta(p, b, at));
+            vf_store(values[COMPONENT_ALPHA] + at, alpha_of_roughness(derived_roughness(j, b, at)));
+        if (p->derived & FACET_STREAM_ALPHA_Y) vf_store(values[COMPONENT_ALPHA_Y] + at, source_ALPHA(j, b, at));
+        if (p->derived & FACET_STREAM_F0) store3(values, COMPONENT_F0, at, derived_f0(j, b, at));
+        if (p->derived & FACET_STREAM_ETA) store3(values, COMPONENT_ETA, at, derived_eta(j, b, at));
     }
 }
 
-/* Fills blocks with what is uniform, the material's numbers too. */
-OP void open_uniform(job *j, block_values values)
+/* Points a stream's components to `values`. */
+OP void place(job *j, int stream, block_values values, size_t mask)
 {
-    const size_t count = j->count < BLOCK ? j->count : BLOCK;
-    for (uint32_t left = j->uniform; left; left &= left - 1) {
-        const int stream = __builtin_ctz(left);
-        for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
-            for (size_t k = 0; k < count; k += VF_LANES) vf_store(values[c] + k, splat(*j->component[c]));
-            j->component[c] = values[c];
-        }
+    for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
+        j->component[c] = values[c];
+        j->mask[c] = mask;
     }
+}
+
+/* Finds a place for what is uniform, the material's numbers too, and for what is derived. */
+static __attribute__((noinline)) void place_values(job *j, block_values values)
+{
+    for (int c = 0; c < COMPONENT_COUNT; c++) j->mask[c] = ~(size_t)0;
+    for (uint32_t left = j->uniform; left; left &= left - 1) {
+        const int stream = __builtin_ctz(left), first = streams[stream].first;
+        for (int c = first; c < first + streams[stream].components; c++)
+            EACH(k) vf_store(values[c] + k * VF_LANES, splat(*j->component[c]));
+        place(j, stream, values, 0);
+    }
+    for (uint32_t left = j->plan->derived; left; left &= left - 1) place(j, __builtin_ctz(left), values, BLOCK - 1);
 }
 
 void KERNEL(job *j)
 {
-    const plan_fields *p = j->plan;
-    block_shader *shader = choose_shader(j);
+    const bool derived = j->plan->derived;
+    const size_t step = derived || j->coverage ? BLOCK : j->count;
+    const choice chosen = choose_shader(j);
     block_values values;
-    size_t invalid = 0;
-    open_uniform(j, values);
+    invalids invalid = { 0, 0 };
+    block b;
+    if (!j->dense || !chosen.plain) place_values(j, values);
+    b.component = j->component;
+    b.mask = j->mask;
+    b.whole = !j->coverage;
+    b.mended = false;
 
-    for (size_t i = 0; i < j->count; i += BLOCK) {
-        block b;
-        b.component = j->component;
+    for (size_t i = 0; i < j->count; i += step) {
         b.i = i;
-        b.count = j->count - i < BLOCK ? j->count - i : BLOCK;
-        b.covered = covered_samples(j, i, b.count);
-        b.mended = false;
+        b.count = j->count - i < step ? j->count - i : step;
+        if (!b.whole) b.covered = covered_samples(j, i, b.count);
         for (int c = 0; c < 3; c++) b.radiance[c] = j->radiance[c] + i;
-        for (int c = 0; c < j->moving_count && i > 0; c++) j->component[j->moving[c]] += BLOCK;
-        if (p->derived) derive(p, &b, (place){ j->component, values });
-        uint64_t bad = 0;
+        if (derived) derive(j, &b, values);
         for (size_t at = 0; at < b.count;) {
-            at = shader(j, &b, at, &bad);
+            at = chosen.shade(j, &b, at, &invalid);
             if (at >= b.count) break;
-            bad |= (uint64_t)shade_mended(j, &b, at, shader) << at;
+            invalid.count += shade_mended(j, &b, at);
             at += GROUP;
         }
-        for (; bad; bad &= bad - 1) invalid++;
     }
-    if (j->invalid) *j->invalid += invalid;
+    if (j->invalid) *j->invalid += invalid.count;
 }

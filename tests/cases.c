@@ -29,6 +29,7 @@ enum {
 #define FACET_MASKING(id, name, ...) MASKING_##name = FACET_MASKING_##id,
 #define FACET_FRESNEL(id, name, ...) FRESNEL_##name = FACET_FRESNEL_##id,
 #include "models.def"
+    MASKING_none = 0, FRESNEL_none = 0
 };
 
 /* A masking under a distribution. */
@@ -42,7 +43,7 @@ static const pair pairs[] = {
 
 /* The rows of special.def, which the library has kernels of their own for. */
 static const struct { int diffuse, distribution, masking, fresnel; bool coupled; } specials[] = {
-#define FACET_SPECIAL(diffuse, distribution, masking, fresnel, coupled)                                               \
+#define FACET_SPECIAL(name, diffuse, distribution, masking, fresnel, coupled)                                         \
     { DIFFUSE_##diffuse, DISTRIBUTION_##distribution, MASKING_##masking, FRESNEL_##fresnel, coupled },
 #include "special.def"
 };
@@ -165,7 +166,7 @@ static void add_special(int i)
 {
     const bool has_diffuse = specials[i].diffuse != FACET_DIFFUSE_NONE;
     add_case((recipe){ .diffuse = has_diffuse ? diffuse_row(specials[i].diffuse) : NULL,
-                       .specular = find_pair(specials[i].masking, specials[i].distribution),
+                       .specular = find_pair(specials[i].masking, specials[i].distribution),   /* NULL: none */
                        .fresnel = fresnel_row(specials[i].fresnel), .coupled = specials[i].coupled });
 }
 
