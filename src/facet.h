@@ -346,8 +346,9 @@ typedef struct facet_batch {
  * `*error` (may be NULL); data never fails. A sample's bytes depend on nothing
  * but its own values: not on its place, the count, the alignment or its neighbours. Results for special samples, where
  * the first row that applies holds, and what a parameter follows from counts as read:
- *   NaN or infinity in a value that is read, n = 0, or a
- *   tangent that is read and 0                             0, and counted in `invalid`
+ *   NaN in a value that is read, or an infinity where
+ *   nothing bounds it; n = 0, or a tangent that is read
+ *   and 0                                                  0, and counted in `invalid`
  *   nl <= 0 or nv <= 0                                     that light adds exactly 0
  *   v + l = 0                                              specular 0
  *   a point or spot light at distance 0, or whose squared

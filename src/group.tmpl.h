@@ -6,10 +6,11 @@
 
 #include "models.tmpl.h"
 
-/* Vectors in a group: what measured fastest, set by the vector layer for each tier. */
+/* Vectors in a group: what measured fastest for the kernel that has all models, set by the vector layer. Specialised
+ * rows take one: features.vectors, a constant. */
 #define VECTORS VF_INTERLEAVE
 #define GROUP   (VECTORS * VF_LANES)
-#define EACH(k) _Pragma("GCC unroll 4") for (int k = 0; k < VECTORS; k++)
+#define EACH(k) _Pragma("GCC unroll 4") for (int k = 0; k < x.vectors; k++)
 
 /* A bit for each of n <= 32 lanes. */
 #define LANES(n) ((uint32_t)((1ull << (n)) - 1))
@@ -28,6 +29,7 @@ typedef struct {
     facet_distribution distribution;
     enum visibility visibility;
     facet_fresnel fresnel;
+    int vectors;
     uint32_t streams;        /* FACET_STREAM_*: what is read, or made by the kernel and read */
     bool coupled, scaled, two_sided;
     bool sigma_given;        /* per sample */
@@ -40,6 +42,7 @@ typedef struct {
  * Streams are read where they are needed, again for each light: a load is cheaper than a register held. */
 
 typedef struct {
+    const plan_fields *plan;
     const float *const *component;       /* of the streams, and the masks of their indices */
     const size_t *mask;
     size_t at;                           /* the group's first sample in the batch */
@@ -50,58 +53,75 @@ typedef struct {
     vf3 sum[VECTORS];                    /* over the lights */
 } group;
 
-#define LOAD(g, id, k)  load(g, x.dense, COMPONENT_##id, k)
-#define LOAD3(g, id, k) load3(g, x.dense, COMPONENT_##id, k)
-
 OP vf load(const group *g, bool dense, int component, int k)
 {
     const size_t at = dense ? g->at : g->at & g->mask[component];
     return vf_load(g->component[component] + at + k * VF_LANES);
 }
 
-OP vf3 load3(const group *g, bool dense, int component, int k)
+/* A value in its domain; a NaN stays one, and infinity where there is no upper end. */
+OP vf in_domain(vf a, float low, float high)
 {
-    return (vf3){ load(g, dense, component, k), load(g, dense, component + 1, k), load(g, dense, component + 2, k) };
+    if (!(__builtin_constant_p(low) && low == -FLT_MAX)) a = vf_max(splat(low), a);
+    if (!(__builtin_constant_p(high) && high == FLT_MAX)) a = vf_min(splat(high), a);
+    return a;
 }
 
+/* load_ID: vector k of a stream. */
+#define VALUE_1 vf
+#define VALUE_3 vf3
+#define LOADED_1(id, low, high) in_domain(load(g, x.dense, COMPONENT_##id, k), low, high)
+#define LOADED_3(id, low, high)                                                                                       \
+    (vf3){ in_domain(load(g, x.dense, COMPONENT_##id, k), low, high),                                                 \
+           in_domain(load(g, x.dense, COMPONENT_##id + 1, k), low, high),                                             \
+           in_domain(load(g, x.dense, COMPONENT_##id + 2, k), low, high) }
+#define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
+    OP VALUE_##components load_##id(const group *g, features x, int k)                                                \
+    {                                                                                                                 \
+        const plan_fields *p = g->plan;                                                                               \
+        (void)p;                                                                                                      \
+        return LOADED_##components(id, low, high);                                                                    \
+    }
+#include "streams.def"
+
 /* What a model uses of it is loaded where it uses it; the rest is dead code. */
-OP surface surface_at(const group *g, features x, const plan_fields *p, int k)
+OP surface surface_at(const group *g, features x, int k)
 {
+    const plan_fields *p = g->plan;
     surface s;
-    s.n = LOAD3(g, NORMAL, k);
-    s.v = LOAD3(g, VIEW, k);
-    s.tangent = LOAD3(g, TANGENT, k);
+    s.n = load_NORMAL(g, x, k);
+    s.v = load_VIEW(g, x, k);
+    s.tangent = load_TANGENT(g, x, k);
     s.terms = g->terms[k];
-    s.albedo = LOAD3(g, ALBEDO, k);
-    s.alpha = LOAD(g, ALPHA, k);
+    s.albedo = load_ALBEDO(g, x, k);
+    s.alpha = load_ALPHA(g, x, k);
     s.alpha2 = square(s.alpha);
-    s.alpha_y = LOAD(g, ALPHA_Y, k);
-    s.exponent = LOAD(g, EXPONENT, k);
-    s.f0 = LOAD3(g, F0, k);
+    s.alpha_y = load_ALPHA_Y(g, x, k);
+    s.exponent = load_EXPONENT(g, x, k);
+    s.f0 = load_F0(g, x, k);
     s.f90 = x.plain ? splat(1.0f) : splat(p->f90);
     s.f82 = splat3(p->f82);
-    s.eta = LOAD3(g, ETA, k);
-    s.k = LOAD3(g, K, k);
+    s.eta = load_ETA(g, x, k);
+    s.k = load_K(g, x, k);
     s.eta_outside = splat(p->eta_outside);
     s.parallel = splat(0.5f + 0.5f * p->polarisation);
     return s;
 }
 
 /* What a model sees of the group's vector k. */
-#define AT(k) surface_at(g, x, p, k), t[k]
+#define AT(k) surface_at(g, x, k), t[k]
 
 /* The cosine of the eye's angle; 1 where nothing looks at it. */
 OP void look(group *g, features x)
 {
-    EACH(k) g->nv[k] = x.streams & FACET_STREAM_VIEW ? dot(LOAD3(g, NORMAL, k), LOAD3(g, VIEW, k)) : splat(1.0f);
+    EACH(k) g->nv[k] = x.streams & FACET_STREAM_VIEW ? dot(load_NORMAL(g, x, k), load_VIEW(g, x, k)) : splat(1.0f);
 }
 
 /* What follows from sigma. */
-OP void prepare(group *g, features x, const job *j)
+OP void prepare(group *g, features x)
 {
-    const plan_fields *p = j->plan;
     if (!x.sigma_given) {
-        const float *t = p->terms;
+        const float *t = g->plan->terms;
         EACH(k) g->terms[k] = (terms){ splat(t[0]), splat(t[1]), splat(t[2]), splat(t[3]) };
         return;
     }
@@ -110,7 +130,7 @@ OP void prepare(group *g, features x, const job *j)
 #define FACET_DIFFUSE(id, name, word, reads, properties, ...)                                                         \
     case FACET_DIFFUSE_##id:                                                                                          \
         if (FACET_HAS(name) && ((reads) & FACET_STREAM_SIGMA))                                                        \
-            EACH(k) g->terms[k] = terms_##name(LOAD(g, SIGMA, k));                                                    \
+            EACH(k) g->terms[k] = terms_##name(load_SIGMA(g, x, k));                                                    \
         break;
 #include "models.def"
     }
@@ -125,11 +145,11 @@ static __attribute__((noinline, cold)) void pad(const float *from, size_t left, 
 }
 
 /* A group of a light's own stream, whose end the padding of a batch's tail does not reach. */
-OP void load_light(const job *j, const float *stream, size_t i, vf *a, vf *is_finite)
+OP void load_light(features x, const job *j, const float *stream, size_t i, vf *a, vf *is_finite)
 {
     const float *from = stream + i;
     float padded[GROUP];
-    if (j->count - i < GROUP) {
+    if (j->count - i < (size_t)x.vectors * VF_LANES) {
         pad(from, j->count - i, padded);
         from = padded;
     }
@@ -139,13 +159,13 @@ OP void load_light(const job *j, const float *stream, size_t i, vf *a, vf *is_fi
     }
 }
 
-OP void load_light3(const job *j, const float *const *stream, size_t i, vf3 *a, vf *is_finite)
+OP void load_light3(features x, const job *j, const float *const *stream, size_t i, vf3 *a, vf *is_finite)
 {
-    vf x[VECTORS], y[VECTORS], z[VECTORS];
-    load_light(j, stream[0], i, x, is_finite);
-    load_light(j, stream[1], i, y, is_finite);
-    load_light(j, stream[2], i, z, is_finite);
-    EACH(k) a[k] = (vf3){ x[k], y[k], z[k] };
+    vf r[VECTORS], g[VECTORS], b[VECTORS];
+    load_light(x, j, stream[0], i, r, is_finite);
+    load_light(x, j, stream[1], i, g, is_finite);
+    load_light(x, j, stream[2], i, b, is_finite);
+    EACH(k) a[k] = (vf3){ r[k], g[k], b[k] };
 }
 
 /* What of a point light arrives at a distance of r from it, r^2 in the range of normal floats: 1/r^2, with
@@ -171,7 +191,7 @@ OP vf cone(const facet_light *light, vf3 l)
  * square no normal float. */
 OP void aim(const group *g, features x, const facet_light *light, int k, vf3 *l, vf *arrives)
 {
-    vf3 d = sub3(splat3(light->position), LOAD3(g, POSITION, k));
+    vf3 d = sub3(splat3(light->position), load_POSITION(g, x, k));
     vf r2 = dot(d, d), inverse = 1.0f / vf_sqrt(r2);
     vm near = vf_lt(r2, splat(TINY)), far = vf_lt(r2, splat(__builtin_inff()));
     inverse = vf_select(near, splat(0.0f), vf_where(far, inverse));
@@ -186,7 +206,7 @@ OP void load_direction(group *g, features x, const job *j, const facet_light *li
     if (!x.plain && light->kind != FACET_LIGHT_DIRECTIONAL)
         EACH(k) aim(g, x, light, k, &l[k], &arrives[k]);
     else if (!x.plain && light->direction_of[0])
-        load_light3(j, light->direction_of, g->at, l, g->is_finite);
+        load_light3(x, j, light->direction_of, g->at, l, g->is_finite);
     else
         EACH(k) l[k] = splat3(light->direction);
 }
@@ -195,7 +215,7 @@ OP void load_direction(group *g, features x, const job *j, const facet_light *li
 OP void load_irradiance(group *g, features x, const job *j, const facet_light *light, const vf *arrives, vf3 *E)
 {
     if (!x.plain && light->irradiance_of[0])
-        load_light3(j, light->irradiance_of, g->at, E, g->is_finite);
+        load_light3(x, j, light->irradiance_of, g->at, E, g->is_finite);
     else
         EACH(k) E[k] = splat3(light->irradiance);
     EACH(k) E[k] = scale3(E[k], splat(INV_PI));
@@ -204,7 +224,7 @@ OP void load_irradiance(group *g, features x, const job *j, const facet_light *l
 
     if (light->visibility) {
         vf seen[VECTORS];
-        load_light(j, light->visibility, g->at, seen, g->is_finite);
+        load_light(x, j, light->visibility, g->at, seen, g->is_finite);
         EACH(k) E[k] = scale3(E[k], clamp(seen[k], 0.0f, 1.0f));
     }
     if (light->kind != FACET_LIGHT_DIRECTIONAL)
@@ -228,12 +248,12 @@ OP void meet(const group *g, features x, const vf3 *l, incidence *t)
 {
     EACH(k) {
         t[k].l = l[k];
-        t[k].nl = dot(LOAD3(g, NORMAL, k), l[k]);
+        t[k].nl = dot(load_NORMAL(g, x, k), l[k]);
         t[k].vl = t[k].hh = t[k].nw = t[k].nxw2 = splat(0.0f);
     }
     if (x.streams & FACET_STREAM_VIEW)
         EACH(k) {
-            vf3 n = LOAD3(g, NORMAL, k), v = LOAD3(g, VIEW, k), w = add3(v, l[k]);
+            vf3 n = load_NORMAL(g, x, k), v = load_VIEW(g, x, k), w = add3(v, l[k]);
             vf nw = dot(n, w);
             vf3 p = { vf_nmad(nw, n.x, w.x), vf_nmad(nw, n.y, w.y), vf_nmad(nw, n.z, w.z) };
             t[k].vl = dot(v, l[k]);
@@ -244,7 +264,7 @@ OP void meet(const group *g, features x, const vf3 *l, incidence *t)
     face(g, x, t);
 }
 
-OP void diffuse(const group *g, features x, const plan_fields *p, const incidence *t, const vf3 *plus, vf3 *f)
+OP void diffuse(const group *g, features x, const incidence *t, const vf3 *plus, vf3 *f)
 {
     switch (x.diffuse) {
 #define FACET_DIFFUSE(id, name, ...)                                                                                  \
@@ -255,7 +275,7 @@ OP void diffuse(const group *g, features x, const plan_fields *p, const incidenc
     }
 }
 
-OP void distribution(const group *g, features x, const plan_fields *p, const incidence *t, vf *D)
+OP void distribution(const group *g, features x, const incidence *t, vf *D)
 {
     switch (x.distribution) {
 #define FACET_DISTRIBUTION(id, name, ...)                                                                             \
@@ -266,7 +286,7 @@ OP void distribution(const group *g, features x, const plan_fields *p, const inc
     }
 }
 
-OP void visibility(const group *g, features x, const plan_fields *p, const incidence *t, vf *V)
+OP void visibility(const group *g, features x, const incidence *t, vf *V)
 {
     switch (x.visibility) {
 #define FACET_VISIBILITY(masking, distribution, properties)                                                           \
@@ -281,7 +301,7 @@ OP void visibility(const group *g, features x, const plan_fields *p, const incid
     }
 }
 
-OP void fresnel(const group *g, features x, const plan_fields *p, const incidence *t, const vf *weight, vf3 *F)
+OP void fresnel(const group *g, features x, const incidence *t, const vf *weight, vf3 *F)
 {
     switch (x.fresnel) {
 #define FACET_FRESNEL(id, name, ...)                                                                                  \
@@ -300,14 +320,14 @@ OP vf finite_or(vf a, vf instead) { return vf_select(vf_eq(a - a, splat(0.0f)), 
 OP vf add_finite(vf f, vf E, vf sum) { return finite_or(vf_mad(f, E, sum), finite_part(sum + finite_part(f * E))); }
 
 /* Adds the diffuse part to the specular one. */
-OP void add_diffuse(const group *g, features x, const plan_fields *p, const incidence *t, bool mended, vf3 *f)
+OP void add_diffuse(const group *g, features x, const incidence *t, bool mended, vf3 *f)
 {
     vf3 alone[VECTORS], specular[VECTORS], zero[VECTORS];
     EACH(k) specular[k] = f[k];
-    diffuse(g, x, p, t, specular, f);
+    diffuse(g, x, t, specular, f);
     if (!mended) return;
     EACH(k) alone[k] = zero[k] = ZERO3;
-    diffuse(g, x, p, t, zero, alone);
+    diffuse(g, x, t, zero, alone);
     EACH(k) {
         vf3 instead = finite_part3(add3(finite_part3(alone[k]), specular[k]));
         f[k] = (vf3){ finite_or(f[k].x, instead.x), finite_or(f[k].y, instead.y), finite_or(f[k].z, instead.z) };
@@ -315,7 +335,7 @@ OP void add_diffuse(const group *g, features x, const plan_fields *p, const inci
 }
 
 /* The same where the diffuse part is what F leaves: f = diffuse (1 - F) + F D V. */
-OP void add_coupled(const group *g, features x, const plan_fields *p, const incidence *t, bool mended, const vf *DV,
+OP void add_coupled(const group *g, features x, const incidence *t, bool mended, const vf *DV,
                     vf3 *f)
 {
     vf one[VECTORS];
@@ -324,32 +344,32 @@ OP void add_coupled(const group *g, features x, const plan_fields *p, const inci
         one[k] = splat(1.0f);
         F[k] = f[k] = zero[k] = ZERO3;
     }
-    fresnel(g, x, p, t, one, F);
-    diffuse(g, x, p, t, zero, f);
+    fresnel(g, x, t, one, F);
+    diffuse(g, x, t, zero, f);
     if (mended) EACH(k) f[k] = finite_part3(f[k]);
     EACH(k) f[k] = mad3(F[k], same3(DV[k]), mul3(f[k], one_minus3(F[k])));
 }
 
 /* pi times the BRDF times nl. */
-OP void reflect(const group *g, features x, const plan_fields *p, const incidence *t, vf3 *f)
+OP void reflect(const group *g, features x, const incidence *t, vf3 *f)
 {
     const bool mended = !x.plain && g->mended;
     EACH(k) f[k] = ZERO3;
     if (SPECULAR_BUILT && x.distribution != FACET_DISTRIBUTION_NONE) {
         vf D[VECTORS], V[VECTORS];
         EACH(k) D[k] = V[k] = splat(0.0f);
-        distribution(g, x, p, t, D);
-        visibility(g, x, p, t, V);
-        if (x.scaled) EACH(k) V[k] = V[k] * splat(p->scale);
+        distribution(g, x, t, D);
+        visibility(g, x, t, V);
+        if (x.scaled) EACH(k) V[k] = V[k] * splat(g->plan->scale);
         EACH(k) D[k] = D[k] * V[k];
         if (mended) EACH(k) D[k] = finite_part(D[k]);
         if (x.coupled) {
-            add_coupled(g, x, p, t, mended, D, f);
+            add_coupled(g, x, t, mended, D, f);
             return;
         }
-        fresnel(g, x, p, t, D, f);
+        fresnel(g, x, t, D, f);
     }
-    add_diffuse(g, x, p, t, mended, f);
+    add_diffuse(g, x, t, mended, f);
 }
 
 OP void add_light(group *g, features x, const job *j, const facet_light *light)
@@ -362,7 +382,7 @@ OP void add_light(group *g, features x, const job *j, const facet_light *light)
     EACH(k) arrives[k] = splat(1.0f);
     load_direction(g, x, j, light, l, arrives);
     meet(g, x, l, t);
-    reflect(g, x, j->plan, t, f);
+    reflect(g, x, t, f);
     load_irradiance(g, x, j, light, arrives, E);
     if (!mended) {
         EACH(k) g->sum[k] = mad3(f[k], E[k], g->sum[k]);
@@ -391,7 +411,7 @@ OP vf3 ambient(const group *g, features x, const job *j, int k)
 {
     vf3 E = splat3(j->ambient);
     if (j->has_sh) {
-        vf3 n = LOAD3(g, NORMAL, k), sh = splat3(j->sh[0]);
+        vf3 n = load_NORMAL(g, x, k), sh = splat3(j->sh[0]);
         if (x.two_sided) n = (vf3){ vf_flip(n.x, g->nv[k]), vf_flip(n.y, g->nv[k]), vf_flip(n.z, g->nv[k]) };
         sh = mad3(splat3(j->sh[1]), same3(n.y), sh);
         sh = mad3(splat3(j->sh[2]), same3(n.z), sh);
@@ -399,7 +419,7 @@ OP vf3 ambient(const group *g, features x, const job *j, int k)
         E = add3(E, not_negative3(sh));
     }
     if (g->mended) E = finite_part3(E);
-    return x.streams & FACET_STREAM_OCCLUSION ? scale3(E, LOAD(g, OCCLUSION, k)) : E;
+    return x.streams & FACET_STREAM_OCCLUSION ? scale3(E, load_OCCLUSION(g, x, k)) : E;
 }
 
 /* Adds what is there without a light. Returns a bit for each sample that a light's or the destination's value made
@@ -407,7 +427,7 @@ OP vf3 ambient(const group *g, features x, const job *j, int k)
 OP uint32_t add_constants(group *g, features x, const job *j, float *const *radiance, size_t at)
 {
     uint32_t invalid = 0;
-    if (j->has_ambient) EACH(k) g->sum[k] = mad3(LOAD3(g, ALBEDO, k), ambient(g, x, j, k), g->sum[k]);
+    if (j->has_ambient) EACH(k) g->sum[k] = mad3(load_ALBEDO(g, x, k), ambient(g, x, j, k), g->sum[k]);
     if (j->has_emission) EACH(k) g->sum[k] = add3(g->sum[k], splat3(j->plan->emission));
     if (j->flags & FACET_ACCUMULATE)
         EACH(k) {
@@ -427,7 +447,7 @@ OP uint32_t add_constants(group *g, features x, const job *j, float *const *radi
 }
 
 /* Writes the group, clamped to what radiance may be. */
-OP void store(const group *g, bool clamped, float *const *radiance, size_t at)
+OP void store(const group *g, features x, bool clamped, float *const *radiance, size_t at)
 {
     EACH(k) {
         vf3 out = g->sum[k];

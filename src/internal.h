@@ -91,11 +91,16 @@ enum { F0_FROM_ETA = 1, ETA_FROM_F0 = 2, F82_FROM_ETA = 4 };
 /* What a facet_plan holds. Every number is as the kernels want it: clamped, derived, ready to be splatted. The numbers
  * of streams are under the streams' names. */
 typedef struct __attribute__((may_alias)) plan_fields {
-    uint32_t magic;                      /* PLAN_MAGIC; tells foreign bytes and byte order */
-    uint8_t arch, tier;                  /* the kernel's id */
-    uint8_t diffuse, distribution, masking, visibility, fresnel, convention;
-    uint8_t coupled, clamped_alpha, number_from;   /* *_FROM_* */
-    uint8_t needs_view, fresnel_properties;
+    uint32_t sum;                        /* plan_sum: tells foreign bytes, another version, another byte order */
+    union {
+        uint32_t rows[3];
+        struct {
+            uint8_t arch, tier;          /* the kernel's id */
+            uint8_t diffuse, distribution, masking, visibility, fresnel, convention;
+            uint8_t coupled, clamped_alpha, number_from;   /* *_FROM_* */
+            uint8_t fresnel_properties;
+        };
+    };
     uint32_t promised;                   /* FACET_STREAM_*: by the material */
     uint32_t needed;                     /* read by the models */
     uint32_t derived;                    /* of these, made by the kernel from ... */
@@ -136,14 +141,17 @@ typedef void kernel(job *);
 /* The kernel of an architecture and tier; NULL where the build lacks it. */
 kernel *facet_kernel(facet_arch arch, facet_tier tier);
 
-/* Whether these bytes can be a plan of this library: what the kernels index and switch by is in range. */
+/* What a plan's first words add up to, each times an odd constant: another byte anywhere is another sum. */
+static inline uint32_t plan_sum(const plan_fields *p)
+{
+    return PLAN_MAGIC + p->rows[0] * 0x9e3779b1u + p->rows[1] * 0x85ebca6bu + p->rows[2] * 0xc2b2ae35u
+         + p->promised * 0x27d4eb2fu + p->needed * 0x165667b1u + p->derived * 0xd3a2646du + p->sources * 0xfd7046c5u;
+}
+
+/* Whether these bytes are a plan of this library, as facet_plan_init made it, for a kernel that it has. */
 static inline bool plan_valid(const plan_fields *p)
 {
-    return p->magic == PLAN_MAGIC && p->arch < ARCH_COUNT && p->tier < TIER_COUNT && p->diffuse < DIFFUSE_ROWS
-        && p->distribution < DISTRIBUTION_ROWS && p->masking < MASKING_ROWS && p->visibility <= VISIBILITY_NONE
-        && p->fresnel < FRESNEL_ROWS && !((p->promised | p->needed | p->derived | p->sources) >> STREAM_COUNT)
-        && p->convention <= FACET_CONVENTION_SPECULAR_GLOSSINESS
-        && facet_kernel((facet_arch)p->arch, (facet_tier)p->tier);
+    return p->sum == plan_sum(p) && facet_kernel((facet_arch)p->arch, (facet_tier)p->tier);
 }
 
 static inline facet_status refuse(facet_error *error, facet_status code, const char *field, int index)

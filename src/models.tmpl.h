@@ -426,7 +426,7 @@ OP vf dielectric(vf eta, vf o, vf c, vf parallel)
     vf sum = vf_max(splat(TINY), vf_sqrt(not_negative(g2)) + oc), difference = m / sum;
     vf p = vf_mad(c, sum, -o) / vf_mad(c, difference, o);
     vf F = square(difference / sum) * vf_mad(parallel, square(p), 1.0f - parallel);
-    return vf_select(vf_lt(g2, splat(0.0f)), splat(1.0f), vf_min(F, splat(1.0f)));
+    return vf_select(vf_lt(g2, splat(0.0f)), splat(1.0f), vf_min(splat(1.0f), F));
 }
 OP vf3 fresnel_dielectric(surface s, incidence i, vf weight)
 {
@@ -457,7 +457,7 @@ OP vf conductor(vf eta, vf k, vf o, vf c, vf parallel)
 
     vf steep = o * sin2, bc2 = b2 * square(c), minus = vf_mad(a, c, -steep), plus = vf_mad(a, c, steep);
     vf ratio = vf_mad(minus, minus, bc2) / vf_max(splat(TINY), vf_mad(plus, plus, bc2));
-    return vf_min(Rs * vf_mad(parallel, ratio, 1.0f - parallel), splat(1.0f));
+    return vf_min(splat(1.0f), Rs * vf_mad(parallel, ratio, 1.0f - parallel));
 }
 OP vf3 fresnel_conductor(surface s, incidence i, vf weight)
 {

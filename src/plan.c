@@ -163,8 +163,9 @@ static facet_status check_material(const facet_material *m, uint32_t needed, fac
 static uint32_t needed_streams(const facet_material *m)
 {
     uint32_t needed = diffuse_rows[m->diffuse.model].reads;
+    if (diffuse_rows[m->diffuse.model].properties & VIEWED) needed |= FACET_STREAM_VIEW;
     if (m->specular.model != FACET_DISTRIBUTION_NONE)
-        needed |= distribution_rows[m->specular.model].reads | fresnel_rows[m->fresnel.model].reads;
+        needed |= FACET_STREAM_VIEW | distribution_rows[m->specular.model].reads | fresnel_rows[m->fresnel.model].reads;
     return needed;
 }
 
@@ -277,7 +278,6 @@ static terms terms_of(facet_diffuse model, float sigma)
 static void compile_diffuse(plan_fields *p, const facet_material *m)
 {
     p->diffuse = (uint8_t)m->diffuse.model;
-    p->needs_view = (diffuse_rows[m->diffuse.model].properties & VIEWED) != 0;
     if (!(p->needed & FACET_STREAM_SIGMA)) return;
     p->sigma_max = diffuse_rows[m->diffuse.model].sigma_max;
     if (p->promised & FACET_STREAM_SIGMA) return;
@@ -308,7 +308,6 @@ static void compile_specular(plan_fields *p, const facet_material *m)
     p->visibility = VISIBILITY_NONE;
     p->scale = 1.0f;
     if (m->specular.model == FACET_DISTRIBUTION_NONE) return;
-    p->needs_view = 1;
     p->coupled = m->coupled;
     if (m->specular.scale != 0.0f) p->scale = m->specular.scale;
     compile_fresnel(p, m);
@@ -330,7 +329,6 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
 
     for (size_t i = 0; i < sizeof out->opaque / sizeof out->opaque[0]; i++) out->opaque[i] = 0;
     plan_fields *p = (plan_fields *)out;
-    p->magic = PLAN_MAGIC;
     p->arch = (uint8_t)target.arch;
     p->tier = (uint8_t)target.tier;
     p->convention = (uint8_t)m->convention.model;
@@ -346,6 +344,7 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
     forget_numbers(p);
     p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
     store3(p->emission, not_negative3(splat3(m->emission)));
+    p->sum = plan_sum(p);
     return FACET_OK;
 }
 

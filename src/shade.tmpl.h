@@ -25,52 +25,36 @@ typedef struct {
 /* The bits of a vector's three components, together. */
 OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 
-/* Leaves a sign where a value of a stream is outside its domain, for those of one component and of three. `*unit`
- * gathers what must not be above 1. */
-OP vf outside_1(vf a, float low, float high, vf *unit)
-{
-    vf odd = splat(0.0f);
-    if (__builtin_constant_p(high) && high == 1.0f) *unit = vf_bits_max(*unit, a);
-    else odd = above(a, high);
-    return low > 0.0f ? vf_or(odd, below(a, low)) : odd;
-}
-OP vf outside_3(vf3 a, float low, float high, bool plain, vf *unit)
-{
-    if (low < 0.0f) return above(largest((vf3){ vf_abs(a.x), vf_abs(a.y), vf_abs(a.z) }), high);
-    if (__builtin_constant_p(high) && high == FLT_MAX) return plain ? any_bits(a) : above(any_bits(a), FLT_MAX);
-    vf odd = outside_1(largest(a), 0.0f, high, unit);
-    return low > 0.0f ? vf_or(odd, vf_or(vf_or(below(a.x, low), below(a.y, low)), below(a.z, low))) : odd;
-}
+/* 0 + 0 a: NaN where a is not finite. */
+OP vf not_finite_1(vf a, vf sum) { return vf_mad(a, splat(0.0f), sum); }
+OP vf not_finite_3(vf3 a, vf sum) { return not_finite_1(a.x, not_finite_1(a.y, not_finite_1(a.z, sum))); }
 
-/* The streams that most batches have, and those that fewer have and that share one branch. */
-#define COMMON_STREAMS (FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALPHA | FACET_STREAM_F0)
-#define RARE_STREAMS   (~(uint32_t)(FACET_STREAM_NORMAL | FACET_STREAM_VIEW | COMMON_STREAMS))
+/* The streams that most batches have, and whose NaNs and infinities show in the result of a plain one. */
+#define COMMON_STREAMS                                                                                                \
+    ((uint32_t)(FACET_STREAM_NORMAL | FACET_STREAM_VIEW | FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA                    \
+                | FACET_STREAM_ALPHA | FACET_STREAM_F0))
 
-/* Leaves a sign where a sample of the group may need mending; errs on the side of yes: several components' bits
- * together can look like an infinity, but not while all are of magnitude below 2. A plain batch's vectors need no look:
- * what is not finite shows in the result, and a zero normal's result is 0. */
-OP vf odd_values(const group *g, features x, const plan_fields *p, int k)
+/* A sign where a vector is 0. */
+OP vf no_vector(vf3 a) { return below(vf_abs(any_bits(a)), FLT_TRUE_MIN); }
+
+/* Leaves a sign where a sample of the group must be mended, but for what shows in its result. */
+OP vf odd_values(const group *g, features x, int k)
 {
-    vf odd = splat(0.0f), unit = splat(0.0f);
-    if (!x.plain) {
-        vf n = vf_abs(any_bits(LOAD3(g, NORMAL, k))), v = n;
-        if (x.streams & FACET_STREAM_VIEW) v = vf_abs(any_bits(LOAD3(g, VIEW, k)));
-        odd = vf_or(below(n, FLT_TRUE_MIN), above(vf_or(n, v), FLT_MAX));
-    }
-#define OUTSIDE_1(id, low, high) outside_1(LOAD(g, id, k), low, high, &unit)
-#define OUTSIDE_3(id, low, high) outside_3(LOAD3(g, id, k), low, high, x.plain, &unit)
-#define OUTSIDE(which, id, components, low, high)                                                                     \
-    if ((which) & FACET_STREAM_##id && x.streams & FACET_STREAM_##id)                                                 \
-        odd = vf_or(odd, OUTSIDE_##components(id, low, high));
-#define FACET_STREAM(id, field, components, owner, low, high, title) OUTSIDE(COMMON_STREAMS, id, components, low, high)
+    const uint32_t looked_at = x.plain ? x.streams & ~COMMON_STREAMS : x.streams;
+    vf sum = splat(0.0f), odd = sum;
+    if (!looked_at) return odd;
+#define LOOK_AT(which, id, components)                                                                                \
+    if ((which) & FACET_STREAM_##id && looked_at & FACET_STREAM_##id)                                                 \
+        sum = not_finite_##components(load_##id(g, x, k), sum);
+#define FACET_STREAM(id, field, components, ...) LOOK_AT(COMMON_STREAMS, id, components)
 #include "streams.def"
-    if (x.streams & RARE_STREAMS) {
-#define FACET_STREAM(id, field, components, owner, low, high, title) OUTSIDE(RARE_STREAMS, id, components, low, high)
+    if (looked_at & ~COMMON_STREAMS) {
+#define FACET_STREAM(id, field, components, ...) LOOK_AT(~COMMON_STREAMS, id, components)
 #include "streams.def"
-        if (x.streams & FACET_STREAM_TANGENT)
-            odd = vf_or(odd, below(vf_abs(any_bits(LOAD3(g, TANGENT, k))), FLT_TRUE_MIN));
+        if (x.streams & FACET_STREAM_TANGENT) odd = no_vector(load_TANGENT(g, x, k));
     }
-    return vf_or(odd, above(unit, 1.0f));
+    if (!x.plain) odd = vf_or(odd, no_vector(load_NORMAL(g, x, k)));
+    return vf_or(odd, above(sum, FLT_MAX));
 }
 
 /* Where the samples from `at` on cease to be covered. */
@@ -81,9 +65,10 @@ OP size_t covered_end(const block *b, size_t at)
     return at;
 }
 
-OP group open_group(const block *b, size_t at)
+OP group open_group(const job *j, features x, const block *b, size_t at)
 {
     group g;
+    g.plan = j->plan;
     g.component = b->component;
     g.mask = b->mask;
     g.at = b->i + at;
@@ -96,7 +81,7 @@ OP group open_group(const block *b, size_t at)
 }
 
 /* Whether the group must be mended before it can be written. */
-OP bool is_odd(const group *g, const vf *odd)
+OP bool is_odd(const group *g, features x, const vf *odd)
 {
     uint32_t mend = 0;
     EACH(k) mend |= vf_signs(vf_or(odd[k], above(largest(g->sum[k]), FLT_MAX)));
@@ -110,17 +95,17 @@ typedef struct { size_t count; uint32_t last; } invalids;
  * it stopped. */
 OP size_t shade_block(const job *j, features x, const block *b, size_t at, invalids *invalid)
 {
-    const size_t end = covered_end(b, at);
-    for (; at + GROUP <= end; at += GROUP) {
+    const size_t end = covered_end(b, at), step = (size_t)x.vectors * VF_LANES;
+    for (; at + step <= end; at += step) {
         vf odd[VECTORS];
-        group g = open_group(b, at);
-        EACH(k) odd[k] = odd_values(&g, x, j->plan, k);
+        group g = open_group(j, x, b, at);
+        EACH(k) odd[k] = odd_values(&g, x, k);
         look(&g, x);
-        prepare(&g, x, j);
+        prepare(&g, x);
         for (size_t i = 0; i < j->light_count; i++) add_light(&g, x, j, &j->lights[i]);
         uint32_t bad = add_constants(&g, x, j, b->radiance, at);
-        if (is_odd(&g, odd)) break;
-        store(&g, b->mended, b->radiance, at);
+        if (is_odd(&g, x, odd)) break;
+        store(&g, x, b->mended, b->radiance, at);
         invalid->last = bad;
         for (; bad; bad &= bad - 1) invalid->count++;
     }
@@ -131,28 +116,28 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, inval
  * arithmetic fills the other's latencies. */
 OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
 {
-    const size_t end = covered_end(b, at);
+    const size_t end = covered_end(b, at), step = (size_t)x.vectors * VF_LANES;
     const facet_light *light = j->lights;
     vf3 l[VECTORS], E[VECTORS];
     incidence t[VECTORS], next[VECTORS];
-    if (at + GROUP > end) return at;
+    if (at + step > end) return at;
 
     EACH(k) l[k] = splat3(light->direction);
     EACH(k) E[k] = scale3(splat3(light->irradiance), splat(INV_PI));
-    group g = open_group(b, at), h = g;
+    group g = open_group(j, x, b, at), h = g;
     look(&g, x);
     meet(&g, x, l, t);
-    for (; at + GROUP <= end; at += GROUP) {
+    for (; at + step <= end; at += step) {
         vf odd[VECTORS];
-        h.at = at + 2 * GROUP <= end ? g.at + GROUP : g.at;
+        h.at = at + 2 * step <= end ? g.at + step : g.at;
         look(&h, x);
         meet(&h, x, l, next);
-        EACH(k) odd[k] = odd_values(&g, x, j->plan, k);
-        prepare(&g, x, j);
-        reflect(&g, x, j->plan, t, g.sum);
+        EACH(k) odd[k] = odd_values(&g, x, k);
+        prepare(&g, x);
+        reflect(&g, x, t, g.sum);
         EACH(k) g.sum[k] = mul3(g.sum[k], E[k]);
-        if (is_odd(&g, odd)) break;
-        store(&g, false, b->radiance, at);
+        if (is_odd(&g, x, odd)) break;
+        store(&g, x, false, b->radiance, at);
         g.at = h.at;
         EACH(k) t[k] = next[k];
     }
@@ -178,12 +163,14 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
         .scaled = p->scale != 1.0f,
         .two_sided = j->flags & FACET_TWO_SIDED,
         .sigma_given = j->given & FACET_STREAM_SIGMA,
+        .vectors = VECTORS,
     };
     return shade_block(j, x, b, at, invalid);
 }
 
-/* The rows of special.def: the same body with constants, for any batch and for plain ones. */
-#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_)                                     \
+/* The rows of special.def: the same body with constants, for any batch, for plain ones, and for those of one light and
+ * nothing else. */
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
     OP features features_##name(bool sigma_given)                                                                     \
     {                                                                                                                 \
         return (features){ .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                              \
@@ -192,14 +179,21 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
                            .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                              \
                            .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_              \
                                     | DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,                  \
-                           .coupled = coupled_, .sigma_given = sigma_given };                                         \
+                           .coupled = coupled_, .sigma_given = sigma_given, .vectors = 1 };                           \
     }                                                                                                                 \
     static __attribute__((noinline)) size_t shade_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
     {                                                                                                                 \
         features x = features_##name(j->given & FACET_STREAM_SIGMA);                                                  \
+        if (!(any_)) return shade_any(j, b, at, invalid);                                                             \
         x.streams |= streams_read(j);                                                                                 \
         x.scaled = j->plan->scale != 1.0f;                                                                            \
         x.two_sided = j->flags & FACET_TWO_SIDED;                                                                     \
+        return shade_block(j, x, b, at, invalid);                                                                     \
+    }                                                                                                                 \
+    static __attribute__((noinline)) size_t lights_##name(const job *j, const block *b, size_t at, invalids *invalid) \
+    {                                                                                                                 \
+        features x = features_##name(j->given & FACET_STREAM_SIGMA);                                                  \
+        x.plain = true;                                                                                               \
         return shade_block(j, x, b, at, invalid);                                                                     \
     }                                                                                                                 \
     static __attribute__((noinline)) size_t plain_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
@@ -222,16 +216,17 @@ typedef struct { block_shader *shade; bool plain; } choice;
 OP choice choose_shader(const job *j)
 {
     const plan_fields *p = j->plan;
-    const bool plain = j->light_count == 1 && !j->check_lights && !j->has_ambient && !j->has_emission && !j->invalid
-                       && p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f)
-                       && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
+    const bool plain_lights = !j->check_lights && !j->invalid && j->light_count && !(j->streams & FACET_STREAM_OCCLUSION)
+                              && p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f)
+                              && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
+    const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !j->has_emission;
     if (!(j->streams & FACET_STREAM_VIEW)) return (choice){ shade_any, false };
-#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_)                                     \
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
     if (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                  \
         && p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                        \
         && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
         && p->coupled == coupled_)                                                                                    \
-        return (choice){ plain ? plain_##name : shade_##name, plain };
+        return (choice){ plain ? plain_##name : plain_lights ? lights_##name : shade_##name, plain };
 #include "special.def"
     return (choice){ shade_any, false };
 }
@@ -252,16 +247,20 @@ OP const float *values_at(const job *j, int c, size_t i)
     return j->component[c] + (j->dense ? i : i & j->mask[c]);
 }
 
+#define EVERY(k) _Pragma("GCC unroll 4") for (int k = 0; k < VECTORS; k++)
+
 /* A component of b's samples at `at`, with zeros behind the end, clamped to its domain. */
-static void mend_component(const job *j, const block *b, int c, size_t at, float low, float high, float *values,
+static __attribute__((noinline)) void mend_component(const job *j, const block *b, int c, size_t at, float low, float high, float *values,
                            vf *is_finite)
 {
     const size_t count = b->count - at < GROUP ? b->count - at : GROUP;
     const float *from = values_at(j, c, b->i + at);
     for (size_t lane = 0; lane < GROUP; lane++) values[lane] = lane < count ? from[lane] : 0.0f;
-    EACH(k) {
+    EVERY(k) {
         vf a = vf_load(values + k * VF_LANES);
-        is_finite[k] = is_finite[k] + (a - a);
+        vf inside = low > -FLT_MAX ? vf_max(splat(low), a) : a;
+        if (high < FLT_MAX) inside = vf_min(splat(high), inside);
+        is_finite[k] = is_finite[k] + (inside - inside);
         vf_store(values + k * VF_LANES, clamp(a, low, high));
     }
 }
@@ -270,7 +269,7 @@ static void mend_component(const job *j, const block *b, int c, size_t at, float
 static __attribute__((noinline)) uint32_t zero_vectors(float (*values)[GROUP], int component)
 {
     uint32_t zero = 0;
-    EACH(k) {
+    EVERY(k) {
         const float *a = values[component] + k * VF_LANES;
         vf3 vector = { vf_load(a), vf_load(a + GROUP), vf_load(a + 2 * GROUP) };
         zero |= vm_bits(vf_eq(any_bits(vector), splat(0.0f))) << k * VF_LANES;
@@ -279,25 +278,20 @@ static __attribute__((noinline)) uint32_t zero_vectors(float (*values)[GROUP], i
 }
 
 /* Fills `values` from b's samples at `at`, with zeros behind the end, clamps what is outside its domain. Returns a bit
- * for each sample that is invalid: without a normal or a tangent, or not finite. */
+ * for each sample that is invalid: without a normal or a tangent, or not finite where its domain is. */
 static uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GROUP])
 {
     const plan_fields *p = j->plan;
     const uint32_t read = streams_read(j);
-    const struct { float low, high; } domain[STREAM_COUNT] = {
-#define FACET_STREAM(id, field, components, owner, low, high, title) { low, high },
-#include "streams.def"
-    };
     vf is_finite[VECTORS];
-    EACH(k) is_finite[k] = splat(0.0f);
-    for (uint32_t left = read; left; left &= left - 1) {
-        const int stream = __builtin_ctz(left), first = streams[stream].first;
-        for (int c = first; c < first + streams[stream].components; c++)
-            mend_component(j, b, c, at, domain[stream].low, domain[stream].high, values[c], is_finite);
-    }
+    EVERY(k) is_finite[k] = splat(0.0f);
+#define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
+    for (int c = COMPONENT_##id; c < COMPONENT_##id + components && read & FACET_STREAM_##id; c++)                    \
+        mend_component(j, b, c, at, low, high, values[c], is_finite);
+#include "streams.def"
     uint32_t invalid = zero_vectors(values, COMPONENT_NORMAL);
     if (read & FACET_STREAM_TANGENT) invalid |= zero_vectors(values, COMPONENT_TANGENT);
-    EACH(k) invalid |= (~vm_bits(vf_eq(is_finite[k], splat(0.0f))) & LANES(VF_LANES)) << k * VF_LANES;
+    EVERY(k) invalid |= (~vm_bits(vf_eq(is_finite[k], splat(0.0f))) & LANES(VF_LANES)) << k * VF_LANES;
     return invalid;
 }
 
@@ -349,7 +343,8 @@ OP uint64_t covered_samples(const job *j, size_t i, size_t count)
 /* What is uniform, and what is derived, of a block. */
 typedef float block_values[COMPONENT_COUNT][BLOCK];
 
-/* The value of a stream that another is derived from, in its domain; NaN where it is not finite. Zeros past the end. */
+/* The value of a stream that another is derived from, in its domain; NaN where it is not finite there. Zeros past the
+ * end. */
 OP vf source(const job *j, const block *b, int component, size_t at, float low, float high)
 {
     const float *from = values_at(j, component, b->i + at);
@@ -358,16 +353,14 @@ OP vf source(const job *j, const block *b, int component, size_t at, float low, 
         pad(from, b->count - at, padded);
         from = padded;
     }
-    vf a = vf_load(from);
-    return clamp(a, low, high) + (a - a);
+    vf a = in_domain(vf_load(from), low, high);
+    return a + (a - a);
 }
 
 #define SOURCE_1(id, low, high) source(j, b, COMPONENT_##id, at, low, high)
 #define SOURCE_3(id, low, high)                                                                                       \
     (vf3){ source(j, b, COMPONENT_##id, at, low, high), source(j, b, COMPONENT_##id + 1, at, low, high),                    \
            source(j, b, COMPONENT_##id + 2, at, low, high) }
-#define VALUE_1 vf
-#define VALUE_3 vf3
 #define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
     OP VALUE_##components source_##id(const job *j, const block *b, size_t at)                                        \
     {                                                                                                                 \
@@ -437,7 +430,7 @@ static __attribute__((noinline)) void place_values(job *j, block_values values)
     for (uint32_t left = j->uniform; left; left &= left - 1) {
         const int stream = __builtin_ctz(left), first = streams[stream].first;
         for (int c = first; c < first + streams[stream].components; c++)
-            EACH(k) vf_store(values[c] + k * VF_LANES, splat(*j->component[c]));
+            EVERY(k) vf_store(values[c] + k * VF_LANES, splat(*j->component[c]));
         place(j, stream, values, 0);
     }
     for (uint32_t left = j->plan->derived; left; left &= left - 1) place(j, __builtin_ctz(left), values, BLOCK - 1);
