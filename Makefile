@@ -45,7 +45,7 @@ SOURCES := convert cpu describe encode kernels metals plan shade words
 KERNELS := $(foreach arch,$(ARCHES),$(TIERS:%=f32_$(arch)_%))
 OBJECTS := $(SOURCES:%=$(BUILD)/obj/%.o) $(KERNELS:%=$(BUILD)/obj/%.o)
 
-.PHONY: all help demo bench check deps install uninstall clean FORCE
+.PHONY: all help demo bench chart check deps install uninstall clean FORCE
 .DELETE_ON_ERROR:
 
 all: $(BUILD)/libfacet.a $(BUILD)/libfacet.so $(BUILD)/facet.pc ## the library, static and shared
@@ -132,10 +132,30 @@ $(BUILD)/facet-bench: $(BENCH:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
 bench: $(BUILD)/facet-bench ## times every kernel and the baselines, interleaved
 	$(RUN) $(BUILD)/facet-bench
 
+# ---- Charts: speed against accuracy ----------------------------------------------------------------------------------
+
+# Files of facet-bench --tsv, measured here or elsewhere; empty: measures this machine first.
+CHART ?=
+CHARTS := $(BUILD)/chart
+DRAWS  := chart chart_data chart_parts chart_scatter chart_speed chart_models chart_arches chart_failures chart_page \
+    axis labels svg tsv console
+
+$(BUILD)/facet-chart: $(DRAWS:%=$(BUILD)/bench/%.o)
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+$(BUILD)/model-errors: $(BUILD)/tests/model_errors.o $(BUILD)/tests/reference.o $(BUILD)/libfacet.a
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+chart: $(BUILD)/facet-chart $(BUILD)/model-errors $(if $(CHART),,$(BUILD)/facet-bench) ## draws build/chart/index.html
+	@mkdir -p $(CHARTS)
+	$(RUN) $(BUILD)/model-errors > $(CHARTS)/errors.tsv
+	$(if $(CHART),,$(RUN) $(BUILD)/facet-bench --tsv $(CHARTS)/bench.tsv)
+	$(RUN) $(BUILD)/facet-chart --errors $(CHARTS)/errors.tsv -o $(CHARTS) $(or $(CHART),$(CHARTS)/bench.tsv)
+
 # ---- Tests -----------------------------------------------------------------------------------------------------------
 
 # facet-check is every file of tests/ but other programs' and *_arch.c, which are compiled for each kernel.
-SUITES := $(filter-out consumer exr exr_variants filtered metals_table %_arch readme_tables relight, \
+SUITES := $(filter-out consumer exr exr_variants filtered metals_table model_errors %_arch readme_tables relight, \
     $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
 LAYERS := $(foreach arch,$(ARCHES),$(TIERS:%=ops_$(arch)_%) $(TIERS:%=elementary_$(arch)_%))
 
@@ -233,5 +253,6 @@ help: ## lists the targets
 	@echo
 	@echo 'CC= CFLAGS= BUILD= PREFIX= DESTDIR= RUN= (an emulator) V=1 (show commands)'
 	@echo 'ARCHES="scalar ..." TIERS="fast strict" MODELS="lambert ..." build less'
+	@echo 'CHART="a.tsv ..." charts what facet-bench --tsv wrote on these machines'
 
 -include $(wildcard $(BUILD)/*/*.d)
