@@ -39,6 +39,7 @@ everything() {
     job relight
     job program "" readme sh tests/readme.sh "$build"
     job program "" build sh tests/build.sh "$build"
+    job program "" chart sh tests/chart.sh "$build"
     if [ -n "$RUN" ]; then skip "sanitizers" "not under an emulator"; else job sanitizers; fi
     . tests/cross.sh
     jobs_end
