@@ -134,7 +134,7 @@ bench: $(BUILD)/facet-bench ## times every kernel and the baselines, interleaved
 
 # ---- Charts: speed against accuracy ----------------------------------------------------------------------------------
 
-# Files of facet-bench --tsv, measured here or elsewhere; empty: measures this machine first.
+# Files of facet-bench --tsv, measured here or elsewhere; empty: measures this machine first, for some minutes.
 CHART ?=
 CHARTS := $(BUILD)/chart
 DRAWS  := chart chart_data chart_parts chart_scatter chart_speed chart_models chart_arches chart_failures chart_page \
@@ -146,11 +146,16 @@ $(BUILD)/facet-chart: $(DRAWS:%=$(BUILD)/bench/%.o)
 $(BUILD)/model-errors: $(BUILD)/tests/model_errors.o $(BUILD)/tests/reference.o $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-chart: $(BUILD)/facet-chart $(BUILD)/model-errors $(if $(CHART),,$(BUILD)/facet-bench) ## draws build/chart/index.html
-	@mkdir -p $(CHARTS)
-	$(RUN) $(BUILD)/model-errors > $(CHARTS)/errors.tsv
-	$(if $(CHART),,$(RUN) $(BUILD)/facet-bench --tsv $(CHARTS)/bench.tsv)
-	$(RUN) $(BUILD)/facet-chart --errors $(CHARTS)/errors.tsv -o $(CHARTS) $(or $(CHART),$(CHARTS)/bench.tsv)
+$(CHARTS)/errors.tsv: $(BUILD)/model-errors
+	@mkdir -p $(@D)
+	$(RUN) $< > $@
+
+$(CHARTS)/bench.tsv: $(BUILD)/facet-bench $(BUILD)/baselines.tsv FORCE
+	@mkdir -p $(@D)
+	$(RUN) $< --all --seconds 300 --errors tests/accuracy.tsv,$(BUILD)/baselines.tsv --tsv $@
+
+chart: $(BUILD)/facet-chart $(CHARTS)/errors.tsv $(if $(CHART),,$(CHARTS)/bench.tsv) ## draws build/chart/index.html
+	$(RUN) $< --errors $(CHARTS)/errors.tsv -o $(CHARTS) $(or $(CHART),$(CHARTS)/bench.tsv)
 
 # ---- Tests -----------------------------------------------------------------------------------------------------------
 

@@ -89,46 +89,30 @@ static bool read_bench_line(tsv *t, machine *m, bool *known)
     return tsv_refuse(t, "'%.40s' is neither kernel nor peak", what);
 }
 
-static bool same_call(const kernel_row *a, const kernel_row *b)
-{
-    return !strcmp(a->size, b->size) && !strcmp(a->layout, b->layout);
-}
-
 static bool same_kernel(const kernel_row *a, const kernel_row *b)
 {
     return !strcmp(a->kernel, b->kernel) && !strcmp(a->tier, b->tier) && !strcmp(a->arch, b->arch);
 }
 
-/* The row whose size and layout most rows have. */
-static const kernel_row *usual_call(const machine *m)
+/* Tiles of 256 samples whose streams stand apart are what renderers are told to use. */
+static int rank_of_call(const kernel_row *r)
 {
-    const kernel_row *usual = NULL;
-    int most = 0;
-    for (int i = 0; i < m->count; i++) {
-        int found = 0;
-        for (int k = 0; k < m->count; k++)
-            found += same_call(&m->rows[i], &m->rows[k]);
-        if (found > most) {
-            most = found;
-            usual = &m->rows[i];
-        }
-    }
-    return usual;
+    return 2 * !strcmp(r->size, "256") + !strcmp(r->layout, "staggered");
 }
 
-/* Of rows that differ in size and layout alone, charts show the usual one, else the first. */
+/* Of rows that differ in size and layout alone, charts show the one of the highest rank, the first of several. */
 static void choose_charted(machine *m)
 {
-    const kernel_row *usual = usual_call(m);
     for (int i = 0; i < m->count; i++) {
         kernel_row *r = &m->rows[i];
         r->charted = true;
-        for (int k = 0; k < i; k++)
-            if (m->rows[k].charted && same_kernel(&m->rows[k], r)) {
-                const bool better = same_call(r, usual) && !same_call(&m->rows[k], usual);
-                m->rows[k].charted = !better;
-                r->charted = better;
-            }
+        for (int k = 0; k < i && r->charted; k++) {
+            kernel_row *other = &m->rows[k];
+            if (!other->charted || !same_kernel(other, r))
+                continue;
+            r->charted = rank_of_call(r) > rank_of_call(other);
+            other->charted = !r->charted;
+        }
     }
 }
 

@@ -110,14 +110,15 @@ static void title_of_many(const chart_data *d, const char *kernel, char *title, 
                  d->machine_count);
 }
 
-/* Names what is on the front with its numbers, baselines, with their speed where there is room, and there each
- * architecture once. */
+/* Names what is on the front with its numbers, the textbook, and where there is room other baselines with their speed
+ * and each architecture once. */
 static void label_target(mark *m, bool narrow)
 {
     const char *rate = format_rate(m->x);
     char target[128];
     target_name(m->row, target, sizeof target);
-    if (m->on_front || is_baseline(m->row)) {
+    const bool baseline = is_baseline(m->row) && (!narrow || !strcmp(m->row->arch, "literal"));
+    if (m->on_front || baseline) {
         snprintf(m->label, sizeof m->label, "%s", target);
         if (m->on_front || !narrow)
             snprintf(m->more, sizeof m->more, m->on_front ? "%s/s, %s" : "%s/s", rate, format_error(m->y));

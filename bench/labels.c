@@ -111,7 +111,7 @@ static double distance_to(box b, double x, double y)
 static bool crosses(const label *l, box text, box b)
 {
     const double x = clamp(l->x, text.x, text.x + text.width), y = clamp(l->y, text.y, text.y + text.height);
-    for (double t = 0.1; t < 1; t += 0.1)
+    for (double t = 0.05; t < 1; t += 0.05)
         if (distance_to(b, x + t * (l->x - x), y + t * (l->y - y)) == 0 && distance_to(b, l->x, l->y) > 0)
             return true;
     return false;
@@ -162,22 +162,25 @@ static void place(label *l, const crowd *c)
 
 void labels_spread(label *labels, int count, double y, box bounds)
 {
-    for (int i = 0; i < count; i++) {
-        measure(&labels[i]);
-        labels[i].at.x = labels[i].x - labels[i].at.width / 2;
-        labels[i].at.y = y;
-        labels[i].placed = true;
-    }
     qsort(labels, (size_t)count, sizeof *labels, by_x);
+    /* Each as far to the right as those before it ask for, */
     double free_from = bounds.x;
     for (int i = 0; i < count; i++) {
-        labels[i].at.x = fmax(labels[i].at.x, free_from);
-        free_from = labels[i].at.x + labels[i].at.width + gap;
+        label *l = &labels[i];
+        measure(l);
+        l->placed = true;
+        l->at.y = y;
+        l->at.x = fmax(l->x - l->at.width / 2, free_from);
+        free_from = l->at.x + l->at.width + gap;
     }
-    double free_to = bounds.x + bounds.width;
+    /* and to the left as those behind it: half-way between these two, none covers another either. */
+    double free_to = bounds.x + bounds.width, inside_to = free_to;
     for (int i = count - 1; i >= 0; i--) {
-        labels[i].at.x = fmin(labels[i].at.x, free_to - labels[i].at.width);
-        free_to = labels[i].at.x - gap;
+        label *l = &labels[i];
+        const double leftmost = fmin(l->x - l->at.width / 2, free_to - l->at.width);
+        free_to = leftmost - gap;
+        l->at.x = fmin((l->at.x + leftmost) / 2, inside_to - l->at.width);
+        inside_to = l->at.x - gap;
     }
 }
 
@@ -223,7 +226,7 @@ static void draw_leader(svg *s, const label *l)
 {
     const double x = clamp(l->x, l->at.x, l->at.x + l->at.width), y = clamp(l->y, l->at.y, l->at.y + l->at.height);
     const double dx = x - l->x, dy = y - l->y, length = hypot(dx, dy);
-    if (length > l->radius + 8)
+    if (length > l->radius + 5)
         svg_line(s, "leader", x, y, l->x + dx * l->radius / length, l->y + dy * l->radius / length);
 }
 

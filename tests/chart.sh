@@ -119,13 +119,19 @@ same_again() {
     for file in "$work"/one/*; do cmp "$file" "$work/again/$(basename "$file")"; done
 }
 
-# Of sizes and layouts the usual one is drawn; all are in the table.
+# Of sizes and layouts one is drawn; all are in the table.
 one_of_sizes() {
-    { made_up "one machine" "a compiler" 1; row tile fast avx2 1 - 1e-4 - | sed 's/256/16/'; } >"$work/sizes.tsv"
+    {
+        head_lines a b
+        row tile fast avx2 1 - 1e-4 - | sed 's/256/16/'
+        row tile fast avx2 2 - 1e-4 - | sed 's/staggered/aligned/'
+        row tile fast avx2 3 - 1e-4 -
+        row tile fast avx2 4 - 1e-4 - | sed 's/256/4096/'
+    } >"$work/sizes.tsv"
     draw "$work/sizes" "$work/sizes.tsv"
     [ "$(grep -c 'data-of="tile fast avx2"' "$work/sizes/rounding.svg")" = 1 ]
-    grep -q '8 ns a sample' "$work/sizes/rounding.svg"
-    grep -q '<td>16</td>' "$work/sizes/index.html"
+    grep -q '3 ns a sample' "$work/sizes/rounding.svg"
+    [ "$(grep -c '<td class="w">tile</td>' "$work/sizes/index.html")" = 4 ]
 }
 
 # A file without errors, baselines and workloads; line ends of another system.
@@ -153,7 +159,7 @@ check "nothing comes from elsewhere" stands_alone "$work/one"
 check "titles, bands and sources say what the numbers say" says_it
 check "several machines, with a name each" merges
 check "the same input gives the same bytes" same_again
-check "of sizes and layouts the usual one" one_of_sizes
+check "of sizes and layouts, 256 samples, staggered" one_of_sizes
 check "a file with one kernel" little
 check "odd words and bytes" escapes
 if have xmllint; then

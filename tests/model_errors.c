@@ -167,7 +167,6 @@ static void fitted_model(void)
 static void fresnel_ladder(void)
 {
     static const struct { facet_fresnel model; const char *label; } rows[] = {
-        { FACET_FRESNEL_CONSTANT, "F0 alone" },
         { FACET_FRESNEL_SCHLICK, "Schlick" },
         { FACET_FRESNEL_SCHLICK_F82, "Schlick with F82" },
         { FACET_FRESNEL_CONDUCTOR, "exact" },
