@@ -66,14 +66,21 @@ draws() {
     [ -s "$work/one/index.html" ]
 }
 
-# Each row of a file, in each of the drawings for wide screens and for narrow ones.
-marks_all() {
-    grep '^kernel' "$work/a.tsv" | cut -f 2-4 | tr '\t' ' ' | sort >"$work/rows"
+# marked CHART PATTERN: the rows that match, in the chart for wide screens and in that for narrow ones.
+marked() {
+    grep '^kernel' "$work/a.tsv" | cut -f 2-4 | tr '\t' ' ' | grep -E "$2" | sort >"$work/rows"
+    [ -s "$work/rows" ]
     for ending in .svg -narrow.svg; do
-        for chart in $charts; do cat "$work/one/$chart$ending"; done |
-            sed -n 's/.* data-of="\([^"]*\)".*/\1/p' | sort -u >"$work/marks"
-        none "without a mark" "$(comm -23 "$work/rows" "$work/marks")"
+        sed -n 's/.* data-of="\([^"]*\)".*/\1/p' "$work/one/$1$ending" | sort -u >"$work/marks"
+        none "without a mark in $1" "$(comm -23 "$work/rows" "$work/marks")"
     done
+}
+
+marks_all() {
+    marked rounding '^tile '
+    marked kernels ' (fast|strict) '
+    marked arches '^(tile|frame) '
+    marked models '^(lambert|oren-nayar|oren-nayar-full|ggx/smith-correlated/.*) '
 }
 
 tabulates_all() {
