@@ -41,7 +41,7 @@ LIBRARY := $(COMMON) -fPIC -fvisibility=hidden -ffreestanding -fno-math-errno -f
     $(ARCHES:%=-DFACET_ARCH_%=1) $(TIERS:%=-DFACET_TIER_%=1) \
     $(if $(MODELS),-DFACET_FILTERED $(patsubst %,-DFACET_WITH_%=1,none $(subst -,_,$(MODELS))))
 
-SOURCES := convert cpu describe encode kernels metals plan shade words
+SOURCES := convert cpu describe encode fit kernels metals plan shade words
 KERNELS := $(foreach arch,$(ARCHES),$(TIERS:%=f32_$(arch)_%))
 OBJECTS := $(SOURCES:%=$(BUILD)/obj/%.o) $(KERNELS:%=$(BUILD)/obj/%.o)
 
@@ -162,7 +162,7 @@ chart: $(BUILD)/facet-chart $(CHARTS)/errors.tsv $(if $(CHART),,$(CHARTS)/bench.
 # facet-check is every file of tests/ but other programs' and *_arch.c, which are compiled for each kernel.
 SUITES := $(filter-out consumer exr exr_variants filtered metals_table model_errors %_arch readme_tables relight, \
     $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
-LAYERS := $(foreach arch,$(ARCHES),$(TIERS:%=ops_$(arch)_%) $(TIERS:%=elementary_$(arch)_%))
+LAYERS := $(foreach arch,$(ARCHES),$(foreach layer,ops elementary fits,$(TIERS:%=$(layer)_$(arch)_%)))
 
 # An emulator seldom finds the shared libraries of the other machine.
 $(addprefix $(BUILD)/,facet-check facet-demo metals-table readme-tables): private LDFLAGS += $(if $(RUN),-static)
@@ -176,6 +176,11 @@ $(BUILD)/tests/ops_%.o: tests/ops_arch.c $(BUILD)/flags
 $(BUILD)/tests/elementary_%.o: tests/elementary_arch.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(say)$(CC) $(PROGRAM) $(CPPFLAGS) $(CFLAGS) $(KERNEL_FLAGS) -DELEMENTARY_TABLE=elementary_$* -c $< -o $@
+
+# fits_ARCH_TIER.o: fitted Fresnel terms as functions.
+$(BUILD)/tests/fits_%.o: tests/fits_arch.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(say)$(CC) $(PROGRAM) $(CPPFLAGS) $(CFLAGS) $(KERNEL_FLAGS) -DFITS_FUNCTION=fits_$* -c $< -o $@
 
 $(BUILD)/facet-check: $(SUITES:%=$(BUILD)/tests/%.o) $(LAYERS:%=$(BUILD)/tests/%.o) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm -lpthread

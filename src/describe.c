@@ -144,6 +144,28 @@ static void describe_specular(writer *w, const plan_fields *p)
     put(w, "\n");
 }
 
+/* How a term that has an exact formula is evaluated, and why so. */
+static void describe_fit(writer *w, const plan_fields *p)
+{
+    if (!(p->fresnel_properties & MEDIA)) return;
+    put(w, "Fresnel: ");
+    if (p->fits) {
+        put(w, p->fits == 1 ? "a rational function of the cosine" : "a rational function of the cosine per channel");
+        put_numbers(w, ", within", &p->fit_error, 1);
+        put(w, " of the exact term\n");
+        return;
+    }
+    put(w, "exact; ");
+    if (p->tier == FACET_TIER_STRICT) {
+        put(w, "the strict tier has no fits\n");
+    } else if ((p->promised | p->derived) & p->needed & (FACET_STREAM_ETA | FACET_STREAM_K)) {
+        put(w, "what comes per sample has no fit\n");
+    } else {
+        put_numbers(w, "no fit is within", (float[]){ FIT_LIMIT }, 1);
+        put(w, "\n");
+    }
+}
+
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
 static __attribute__((noinline)) size_t describe(const plan_fields *p, char *text, size_t size)
 {
@@ -154,6 +176,7 @@ static __attribute__((noinline)) size_t describe(const plan_fields *p, char *tex
     describe_convention(&w, p);
     describe_diffuse(&w, p);
     describe_specular(&w, p);
+    describe_fit(&w, p);
     if (p->coupled) put(&w, "coupled: diffuse times 1 - F\n");
     if (p->emission[0] + p->emission[1] + p->emission[2] > 0.0f) {
         put_numbers(&w, "emission:", p->emission, 3);

@@ -257,7 +257,8 @@ typedef struct facet_plan {
 } facet_plan;
 
 /* Compiles `material` for `target`. Validates everything; on refusal `*plan` is untouched and `*error` (may be NULL)
- * names the field. Takes about a microsecond, and some more with FACET_ARCH_BEST, which asks the CPU. */
+ * names the field. Takes about a microsecond, some more with FACET_ARCH_BEST, which asks the CPU, and up to 0.2 ms
+ * more where the fast tier fits an exact Fresnel term (facet_plan_describe says how well). */
 static inline facet_status facet_plan_init(facet_plan *plan, const facet_material *material, facet_target target,
                                            facet_error *error);
 

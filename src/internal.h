@@ -3,6 +3,7 @@
 #define FACET_INTERNAL_H
 
 #include "facet.h"
+#include "fit.h"
 
 #include <float.h>
 
@@ -93,12 +94,13 @@ enum { F0_FROM_ETA = 1, ETA_FROM_F0 = 2, F82_FROM_ETA = 4 };
 typedef struct __attribute__((may_alias)) plan_fields {
     uint32_t sum;                        /* plan_sum: tells foreign bytes, another version, another byte order */
     union {
-        uint32_t rows[3];
+        uint32_t rows[4];
         struct {
             uint8_t arch, tier;          /* the kernel's id */
             uint8_t diffuse, distribution, masking, visibility, fresnel, convention;
             uint8_t coupled, clamped_alpha, number_from;   /* *_FROM_* */
             uint8_t fresnel_properties;
+            uint8_t fits;                /* 0: the exact term is evaluated; 1: the three of `fit` are equal; 3 */
         };
     };
     uint32_t promised;                   /* FACET_STREAM_*: by the material */
@@ -110,6 +112,8 @@ typedef struct __attribute__((may_alias)) plan_fields {
     float sigma_max, terms[4];           /* terms: what models.tmpl.h makes of sigma */
     float scale, f90, f82[3], eta_outside, polarisation;
     float emission[3];
+    fresnel_fit fit[3];
+    float fit_error;                     /* the largest of their bounds; relative */
 } plan_fields;
 
 #define PLAN_MAGIC (0xface0000u | FACET_VERSION_MAJOR << 8 | FACET_VERSION_MINOR)
@@ -144,7 +148,7 @@ kernel *facet_kernel(facet_arch arch, facet_tier tier);
 /* What a plan's first words add up to, each times an odd constant: another byte anywhere is another sum. */
 static inline uint32_t plan_sum(const plan_fields *p)
 {
-    return PLAN_MAGIC + p->rows[0] * 0x9e3779b1u + p->rows[1] * 0x85ebca6bu + p->rows[2] * 0xc2b2ae35u
+    return PLAN_MAGIC + p->rows[0] * 0x9e3779b1u + p->rows[1] * 0x85ebca6bu + p->rows[2] * 0xc2b2ae35u + p->rows[3] * 0x2545f491u
          + p->promised * 0x27d4eb2fu + p->needed * 0x165667b1u + p->derived * 0xd3a2646du + p->sources * 0xfd7046c5u;
 }
 

@@ -316,6 +316,28 @@ static void compile_specular(plan_fields *p, const facet_material *m)
     p->visibility = (uint8_t)find_visibility((int)m->specular.masking, (int)m->specular.model);
 }
 
+/* In the fast tier numbers of an exact Fresnel term become a rational function of the cosine per channel, if all can. */
+static void fit_fresnel(plan_fields *p)
+{
+    const uint32_t reads = FACET_STREAM_ETA | FACET_STREAM_K;
+    if (!(FACET_HAS(dielectric) || FACET_HAS(conductor)) || p->tier != FACET_TIER_FAST) return;
+    if (!(p->fresnel_properties & MEDIA) || (p->promised | p->derived) & p->needed & reads) return;
+
+    fresnel_fit fit[3];
+    int fits = 1;
+    for (int c = 1; c < 3; c++)
+        if (bits_of(p->eta[c]) != bits_of(p->eta[0]) || bits_of(p->k[c]) != bits_of(p->k[0])) fits = 3;
+    float worst = 0.0f;
+    for (int c = 0; c < fits; c++) {
+        const float error = facet_fit_fresnel(&fit[c], p->eta[c], p->k[c], p->eta_outside, p->polarisation);
+        if (!finite(error)) return;
+        worst = vf_max(worst, error);
+    }
+    for (int c = 0; c < 3; c++) p->fit[c] = fit[fits == 1 ? 0 : c];
+    p->fits = (uint8_t)fits;
+    p->fit_error = worst;
+}
+
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
 static __attribute__((noinline)) facet_status compile(facet_plan *out, const facet_material *m, facet_target target,
                                                       facet_error *error)
@@ -342,6 +364,7 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
     if (!(p->fresnel_properties & MEDIA || (p->derived & FACET_STREAM_F0 && p->number_from & F0_FROM_ETA)))
         p->eta_outside = 0.0f;
     forget_numbers(p);
+    fit_fresnel(p);
     p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
     store3(p->emission, not_negative3(splat3(m->emission)));
     p->sum = plan_sum(p);

@@ -68,7 +68,7 @@ double random_unit(test_random *r)
 
 static const struct { const char *name; void (*run)(void); } suites[] = {
     { "ops", suite_ops },                  { "elementary", suite_elementary },
-    { "api", suite_api },                  { "encode", suite_encode },
+    { "fits", suite_fits },                    { "api", suite_api },                  { "encode", suite_encode },
     { "conversions", suite_conversions },  { "metals", suite_metals },        { "truths", suite_truths },
     { "accuracy", suite_accuracy },        { "stability", suite_stability },  { "physics", suite_physics },
     { "agreement", suite_agreement },      { "golden", suite_golden },        { "environment", suite_environment },

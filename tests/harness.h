@@ -28,6 +28,7 @@ double random_unit(test_random *);               /* [0, 1) */
 /* The suites, in the order they run (main in harness.c has the table). */
 void suite_ops(void);
 void suite_elementary(void);
+void suite_fits(void);
 void suite_api(void);
 void suite_encode(void);
 void suite_conversions(void);
