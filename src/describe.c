@@ -158,7 +158,7 @@ static void describe_fit(writer *w, const plan_fields *p)
     put(w, "exact; ");
     if (p->tier == FACET_TIER_STRICT) {
         put(w, "the strict tier has no fits\n");
-    } else if ((p->promised | p->derived) & p->needed & (FACET_STREAM_ETA | FACET_STREAM_K)) {
+    } else if (index_per_sample(p)) {
         put(w, "what comes per sample has no fit\n");
     } else {
         put_numbers(w, "no fit is within", (float[]){ FIT_LIMIT }, 1);

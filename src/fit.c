@@ -2,9 +2,7 @@
  *
  * Why degree 4 over 4: sqrt(n^2 - sin^2) changes little over the hemisphere, the less the larger |n|. With n in its
  * place F is exactly such a rational, with the denominator |c + n|^2 |n c + 1|^2. What that leaves, the fit takes. */
-#include "fit.h"
-
-#include <stdbool.h>
+#include "internal.h"
 
 /* Cosines where the error is measured, and those of them where it is made small; unknowns are p, then q. */
 enum { POINTS = 128, STEP = 4, NODES = POINTS / STEP, UNKNOWNS = 2 * FIT_DEGREE, ROWS = NODES + FIT_DEGREE };
@@ -152,6 +150,7 @@ float facet_fit_fresnel(fresnel_fit *fit, float eta, float k, float outside, flo
     const double parallel = 0.5 + 0.5 * (double)polarisation;
     double q[FIT_DEGREE], x[UNKNOWNS], error = 1.0;
     curve at;
+    if (!(FACET_HAS(dielectric) || FACET_HAS(conductor))) return __builtin_inff();
     sample(n, extinction, parallel, &at);
     limit(n, extinction, q);
     for (int i = 0; i < 2 && !(error <= (double)FIT_LIMIT); i++) {

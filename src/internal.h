@@ -116,6 +116,12 @@ typedef struct __attribute__((may_alias)) plan_fields {
     float fit_error;                     /* the largest of their bounds; relative */
 } plan_fields;
 
+/* Whether index or extinction are the batch's, or made by the kernel. */
+static inline bool index_per_sample(const plan_fields *p)
+{
+    return (p->promised | p->derived) & p->needed & (FACET_STREAM_ETA | FACET_STREAM_K);
+}
+
 #define PLAN_MAGIC (0xface0000u | FACET_VERSION_MAJOR << 8 | FACET_VERSION_MINOR)
 
 /* One call of a kernel. */

@@ -319,10 +319,7 @@ static void compile_specular(plan_fields *p, const facet_material *m)
 /* In the fast tier numbers of an exact Fresnel term become a rational function of the cosine per channel, if all can. */
 static void fit_fresnel(plan_fields *p)
 {
-    const uint32_t reads = FACET_STREAM_ETA | FACET_STREAM_K;
-    if (!(FACET_HAS(dielectric) || FACET_HAS(conductor)) || p->tier != FACET_TIER_FAST) return;
-    if (!(p->fresnel_properties & MEDIA) || (p->promised | p->derived) & p->needed & reads) return;
-
+    if (p->tier != FACET_TIER_FAST || !(p->fresnel_properties & MEDIA) || index_per_sample(p)) return;
     fresnel_fit fit[3];
     int fits = 1;
     for (int c = 1; c < 3; c++)
