@@ -29,6 +29,7 @@ typedef struct {
     facet_distribution distribution;
     enum visibility visibility;
     facet_fresnel fresnel;
+    int fits;                /* FITS_* */
     int vectors;
     uint32_t streams;        /* FACET_STREAM_*: what is read, or made by the kernel and read */
     bool coupled, scaled, two_sided;
@@ -303,6 +304,15 @@ OP void visibility(const group *g, features x, const incidence *t, vf *V)
 
 OP void fresnel(const group *g, features x, const incidence *t, const vf *weight, vf3 *F)
 {
+    const fresnel_fit *fit = g->plan->fit;
+    if (x.fits) {
+        EACH(k) {
+            vf c = vh(t[k]);
+            F[k] = same3(fitted(&fit[0], c) * weight[k]);
+            if (x.fits > 1) F[k].y = fitted(&fit[1], c) * weight[k], F[k].z = fitted(&fit[2], c) * weight[k];
+        }
+        return;
+    }
     switch (x.fresnel) {
 #define FACET_FRESNEL(id, name, ...)                                                                                  \
     case FACET_FRESNEL_##id:                                                                                          \

@@ -62,8 +62,19 @@ enum visibility {
     VISIBILITY_NONE
 };
 
-/* What a material without a specular part has, by names as rows have them. */
-enum { MASKING_none = 0, VISIBILITY_none_none = VISIBILITY_NONE, FRESNEL_none = 0, FRESNEL_READS_none = 0 };
+/* Which of a plan's fits a Fresnel term takes: none, one for all channels, three. */
+enum {
+#define FACET_FRESNEL(id, name, ...) FITS_##name = 0,
+#include "models.def"
+    FITS_none = 0, FITS_fitted_dielectric = 1, FITS_fitted_conductor = 3
+};
+
+/* What special.def names beside the rows of models.def: the lack of a specular part, fitted terms. */
+enum {
+    MASKING_none = 0, VISIBILITY_none_none = VISIBILITY_NONE, FRESNEL_none = 0, FRESNEL_READS_none = 0,
+    FRESNEL_fitted_dielectric = FACET_FRESNEL_DIELECTRIC, FRESNEL_READS_fitted_dielectric = 0,
+    FRESNEL_fitted_conductor = FACET_FRESNEL_CONDUCTOR, FRESNEL_READS_fitted_conductor = 0
+};
 
 /* Architectures with FACET_ARCH_BEST, and tiers. */
 enum {

@@ -5,7 +5,7 @@
 #ifndef FACET_MODELS_TMPL_H
 #define FACET_MODELS_TMPL_H
 
-#include "elementary.tmpl.h"
+#include "fit.tmpl.h"
 
 typedef struct { vf x, y, z; } vf3;
 

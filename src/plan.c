@@ -331,6 +331,7 @@ static void fit_fresnel(plan_fields *p)
         worst = vf_max(worst, error);
     }
     for (int c = 0; c < 3; c++) p->fit[c] = fit[fits == 1 ? 0 : c];
+    p->needed &= ~(uint32_t)(FACET_STREAM_ETA | FACET_STREAM_K);
     p->fits = (uint8_t)fits;
     p->fit_error = worst;
 }

@@ -158,6 +158,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
         .distribution = (facet_distribution)p->distribution,
         .visibility = (enum visibility)p->visibility,
         .fresnel = (facet_fresnel)p->fresnel,
+        .fits = FACET_STRICT ? 0 : p->fits,
         .streams = streams_read(j),
         .coupled = p->coupled,
         .scaled = p->scale != 1.0f,
@@ -177,6 +178,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
                            .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                          \
                            .visibility = (enum visibility)VISIBILITY_##masking##_##distribution_,                     \
                            .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                              \
+                           .fits = FITS_##fresnel_,                                                                   \
                            .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_              \
                                     | DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,                  \
                            .coupled = coupled_, .sigma_given = sigma_given, .vectors = 1 };                           \
@@ -225,7 +227,7 @@ OP choice choose_shader(const job *j)
     if (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                  \
         && p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                        \
         && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
-        && p->coupled == coupled_)                                                                                    \
+        && p->fits == FITS_##fresnel_ && !(FACET_STRICT && FITS_##fresnel_) && p->coupled == coupled_)                \
         return (choice){ plain ? plain_##name : plain_lights ? lights_##name : shade_##name, plain };
 #include "special.def"
     return (choice){ shade_any, false };

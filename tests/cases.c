@@ -29,7 +29,8 @@ enum {
 #define FACET_MASKING(id, name, ...) MASKING_##name = FACET_MASKING_##id,
 #define FACET_FRESNEL(id, name, ...) FRESNEL_##name = FACET_FRESNEL_##id,
 #include "models.def"
-    MASKING_none = 0, FRESNEL_none = 0
+    MASKING_none = 0, FRESNEL_none = 0, FRESNEL_fitted_dielectric = FACET_FRESNEL_DIELECTRIC,
+    FRESNEL_fitted_conductor = FACET_FRESNEL_CONDUCTOR
 };
 
 /* A masking under a distribution. */
