@@ -100,10 +100,12 @@ $(BUILD)/tests/%.o: tests/%.c $(BUILD)/flags
 
 # Option words, which facet-demo and relight share.
 WORDS := shading_options model_words command_line console
-DEMO  := demo demo_options $(WORDS) shading_rate balls rigs mesh obj teapot raster image
+DEMO  := demo demo_options $(WORDS) shading_rate workers balls rigs mesh obj teapot raster image
+
+$(BUILD)/bench/workers.o: PROGRAM += -pthread
 
 $(BUILD)/facet-demo: $(DEMO:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
-	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -pthread -o $@ $^ -lm
 
 demo: $(BUILD)/facet-demo ## shades a teapot into build/teapot.png and times every architecture
 	$(RUN) $(BUILD)/facet-demo -o $(BUILD)/teapot.png

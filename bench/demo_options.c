@@ -2,6 +2,7 @@
 #include "balls.h"
 #include "console.h"
 #include "rigs.h"
+#include "workers.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -77,7 +78,7 @@ static bool start_from(options *o, const struct scenery *s)
         .shading.ambient = {0.25f, 0.27f, 0.31f}, .png = s->png, .layout = s->layout, .rig = s->rig,
         .width = s->width, .height = s->height, .samples = s->samples, .azimuth = s->azimuth,
         .elevation = s->elevation, .distance = s->distance, .fov = s->fov, .exposure = 1, .backdrop = s->backdrop,
-        .backdrop_colour = {l, l, l}, .seconds = 0.1f,
+        .backdrop_colour = {l, l, l}, .seconds = 0.1f, .threads = worker_default(),
     };
     return shading_read_material(&o->shading, s->material ? s->material : presets[0].material);
 }
@@ -119,6 +120,18 @@ static bool read_samples(void *to, const setting *s, const char *text)
     options *o = to;
     o->samples = !strcmp(text, "1") ? 1 : !strcmp(text, "4") ? 2 : !strcmp(text, "16") ? 4 : 0;
     return o->samples || setting_refuse(s, text, "1, 4 or 16");
+}
+
+static bool read_threads(void *to, const setting *s, const char *text)
+{
+    char allowed[64];
+    bool digits = *text && strspn(text, "0123456789") == strlen(text);
+    long threads = digits ? strtol(text, NULL, 10) : 0;
+    snprintf(allowed, sizeof allowed, "a whole number from 1 to %d", WORKER_LIMIT);
+    if (threads < 1 || threads > WORKER_LIMIT)
+        return setting_refuse(s, text, allowed);
+    ((options *)to)->threads = (int)threads;
+    return true;
 }
 
 static bool read_background(void *to, const setting *s, const char *text)
@@ -182,6 +195,7 @@ static const setting table[] = {
     {"--exposure", "X", "multiplies the radiance in the PNG (1)", read_number, FIELD(exposure), LIMITS(0, 1e6f)},
     {"-o", "FILE", "the picture, as PNG (teapot.png, metals.png or grazing.png)", read_text, FIELD(png)},
     {"--pfm", "FILE", "the linear radiance too, as PFM", read_text, FIELD(pfm)},
+    {"--threads", "N", "to shade tiles on (one for each CPU that it may run on)", .read = read_threads},
     {"--time", "SECONDS", "how long to time each arch; 0: not (0.1)", read_number, FIELD(seconds), LIMITS(0, 60)},
     {"--list", NULL, "list every model, metal, light, arch, tier, rig and preset", read_switch, FIELD(list)},
     {"--help", NULL, "this", read_switch, FIELD(help)},

@@ -35,6 +35,7 @@ typedef struct options {
     float backdrop_colour[3];
     size_t samples;            /* a pixel's edge, in samples */
     float seconds;             /* to time each arch; 0: none */
+    int threads;
     bool two_sided, flat, help, list;
 } options;
 

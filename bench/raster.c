@@ -260,6 +260,12 @@ static void put(gbuffer *g, size_t i, const surface_point *s, uint32_t streams, 
     g->covered++;
 }
 
+size_t raster_tiles(const raster *r, size_t *columns)
+{
+    *columns = (r->width + TILE_WIDTH - 1) / TILE_WIDTH;
+    return *columns * ((r->height + TILE_HEIGHT - 1) / TILE_HEIGHT);
+}
+
 void raster_tile(const raster *r, const mesh *m, size_t column, size_t row, uint32_t streams, gbuffer *g)
 {
     memset(g, 0, sizeof *g);

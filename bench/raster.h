@@ -31,6 +31,9 @@ void raster_free(raster *r);
 /* Draws `count` of the mesh's triangles from `first` on, both of their sides. */
 void raster_draw(raster *r, const mesh *m, size_t first, size_t count);
 
+/* How many tiles the picture has, and of these in a row. */
+size_t raster_tiles(const raster *r, size_t *columns);
+
 /* Fills the G-buffer of the tile in the given column and row; positions and tangents where `streams`, FACET_STREAM_*,
  * has them. */
 void raster_tile(const raster *r, const mesh *m, size_t column, size_t row, uint32_t streams, gbuffer *g);

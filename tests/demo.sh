@@ -153,15 +153,16 @@ for case in diffuse:phong diffuse:fujii: diffuse:lambert:1 specular:velvet specu
             convention:specular-glossiness:2 arch:z80 tier:slow preset:teapot rig:none size:12 size:0x1 \
             size:1x99999 size:-1x5 samples:3 albedo:1,2 albedo:0,0,1.5 emission:-1 ambient:inf sh:1/2/3 light:1,2 \
             light:x light:area:0,0,1 light:point:0,0,1/1/0 exposure:-1 background:blue fov:0 distance:0 \
-            elevation:91 time:-1; do
+            elevation:91 time:-1 threads:0 threads:-1 threads:1.5 threads:2x threads:257 \
+            threads:18446744073709551617; do
     refused "--${case%%:*} ${case#*:}" "--${case%%:*} .*allowed: " "--${case%%:*}" "${case#*:}"
 done
 
 why=
 demo --help > help.txt 2> err.txt && [ ! -s err.txt ] || why="status or stderr"
 for word in --preset --metals --grazing --grid --compare --rig --size --samples --background --pfm --two-sided \
-            --list --help --diffuse --albedo --specular --masking --scale --fresnel --polarisation --convention \
-            --coupled --emission --light --ambient --sh --arch --tier; do
+            --threads --list --help --diffuse --albedo --specular --masking --scale --fresnel --polarisation \
+            --convention --coupled --emission --light --ambient --sh --arch --tier; do
     grep -q -- "$word" help.txt || why="$why lacks $word"
 done
 verdict "--help" "$why"
@@ -538,6 +539,24 @@ small -o again.png --pfm again.pfm
 same "the same picture twice" once.png again.png
 same "the same radiance twice" once.pfm again.pfm
 
+for look in "--size 203x150" "--grid" "--metals" "--background none --samples 16"; do
+    for threads in 1 2 7; do small $look --threads $threads -o "$threads.png" --pfm "$threads.pfm"; done
+    for threads in 2 7; do
+        same "$look: the picture of $threads threads is that of one" 1.png $threads.png
+        same "$look: the radiance of $threads threads is that of one" 1.pfm $threads.pfm
+    done
+done
+
+name="threads for which there is no room"
+if (ulimit -v 150000 && small --size 400x400 --threads 1 -o one.png); then
+    (ulimit -v 150000 && small --size 400x400 --threads 256 -o few.png)
+    grep -q ' on 256 threads' out.txt && why="$(cat out.txt)" || why=
+    verdict "$name are not counted" "$why"
+    same "$name are done without" one.png few.png
+else
+    skip "$name" "the program does not start where there is little (emulator or sanitizer)"
+fi
+
 # ---- The report ------------------------------------------------------------------------------------------------------
 
 demo --size 96x96 --time 0.01 -o picture.png > report.txt 2> err.txt
@@ -546,8 +565,18 @@ for arch in $archs; do
         why="$(cat report.txt)"
     verdict "samples a second: $arch" "$why"
 done
-grep -q '^rasterize [0-9.]* ms, shade [0-9.]* ms' report.txt && why= || why="$(cat report.txt)"
+# A thread for every CPU that may be used, where there are as many tiles.
+cpus=$(unset OMP_NUM_THREADS OMP_THREAD_LIMIT; nproc 2> /dev/null)
+[ "${cpus:-99}" -le 72 ] || cpus='[0-9]*'
+grep -q "^rasterize [0-9.]* ms, shade [0-9.]* ms.* on $cpus thread" report.txt && why= || why="$(cat report.txt)"
 verdict "times of a frame" "$why"
+for threads in 1 3; do
+    demo --size 96x96 --time 0.01 --threads $threads -o picture.png > report.txt 2> err.txt
+    awk -v threads=$threads '
+        /^shaded and encoded by [a-z0-9]* [a-z]* on 3 threads: / && $10 + 0 > 0 && $11 + 0 > 0 { found++ }
+        END { exit found != (threads == 3) }' report.txt && why= || why="$(cat report.txt)"
+    verdict "samples shaded and encoded a second: --threads $threads" "$why"
+done
 grep -A 1 '^plan' report.txt | grep -q '^  [a-z]' && why= || why="$(cat report.txt)"
 verdict "the plan in words" "$why"
 
