@@ -1,7 +1,30 @@
-/* What this CPU runs: facet_has for architectures, facet_arch_best. */
+/* What this CPU runs: which architectures, and the best of them. */
 #include "cpu.h"
 
 enum { CPU_SSE2 = 1, CPU_SSE41 = 2, CPU_FMA = 4, CPU_AVX2 = 8, CPU_AVX512 = 16, CPU_NEON = 32 };
+
+/* What this file's own flags let the compiler use anywhere, so that nobody needs to ask: SSE2 on x86-64, NEON on
+ * aarch64, and with -march=native what the building machine has. */
+static const unsigned assured = 0
+#ifdef __SSE2__
+    | CPU_SSE2
+#endif
+#ifdef __SSE4_1__
+    | CPU_SSE41
+#endif
+#ifdef __FMA__
+    | CPU_FMA
+#endif
+#ifdef __AVX2__
+    | CPU_AVX2
+#endif
+#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512DQ__) && defined(__AVX512BW__)
+    | CPU_AVX512
+#endif
+#ifdef __aarch64__
+    | CPU_NEON
+#endif
+    ;
 
 #if defined(__x86_64__) || defined(__i386__)
 #include <cpuid.h>
@@ -14,49 +37,52 @@ static unsigned saved_states(void)
     return low;
 }
 
-static unsigned cpu_features(void)
+/* Virtual machines trap cpuid, which takes microseconds: there are two at most. The highest leaf is not asked for: with
+ * SSE2 there is leaf 1; with XSAVE there is leaf 13, which lists the states to save, and so leaf 7. */
+static unsigned ask_cpu(unsigned wanted)
 {
-    const unsigned ymm = 0x6, zmm = 0xe6;
+    const unsigned ymm = 0x6, zmm = 0xe6, avx512 = bit_AVX512F | bit_AVX512VL | bit_AVX512DQ | bit_AVX512BW;
     unsigned a, b, c, d, features = 0;
 
-    if (!__get_cpuid(1, &a, &b, &c, &d)) return 0;
-    if (d & bit_SSE2) features |= CPU_SSE2;
+    __cpuid(1, a, b, c, d);
     if (c & bit_SSE4_1) features |= CPU_SSE41;
     unsigned states = c & bit_OSXSAVE ? saved_states() : 0;
     if (!(c & bit_AVX) || (states & ymm) != ymm) return features;
     if (c & bit_FMA) features |= CPU_FMA;
 
-    const unsigned avx512 = bit_AVX512F | bit_AVX512VL | bit_AVX512DQ | bit_AVX512BW;
-    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d)) return features;
+    if (!(wanted & (CPU_AVX2 | CPU_AVX512))) return features;
+    __cpuid_count(7, 0, a, b, c, d);
     if (b & bit_AVX2) features |= CPU_AVX2;
     if ((b & avx512) == avx512 && (states & zmm) == zmm) features |= CPU_AVX512;
     return features;
 }
-#elif defined(__aarch64__)
-static unsigned cpu_features(void) { return CPU_NEON; }
 #else
-static unsigned cpu_features(void) { return 0; }
+static unsigned ask_cpu(unsigned wanted) { (void)wanted; return 0; }
 #endif
 
-static bool runs(facet_arch arch, unsigned features)
+uint32_t facet_arches_among(uint32_t among)
 {
     static const unsigned needed[ARCH_COUNT] = {
 #define FACET_ARCH(id, name, word, needs, lanes) [FACET_ARCH_##id] = needs,
 #include "arches.def"
     };
-    return arch_built(arch) && (features & needed[arch]) == needed[arch];
+    uint32_t run = 0;
+    unsigned wanted = 0;
+    among &= ARCHES_BUILT;
+    for (int arch = 0; arch < ARCH_COUNT; arch++)
+        if (among >> arch & 1) wanted |= needed[arch] & ~assured;
+    const unsigned features = assured | (wanted ? ask_cpu(wanted) : 0);
+    for (int arch = 0; arch < ARCH_COUNT; arch++)
+        if (among >> arch & 1 && !(needed[arch] & ~features)) run |= 1u << arch;
+    return run;
 }
 
-bool facet_arch_runs(facet_arch arch)
+facet_arch facet_arch_best_of(uint32_t arches)
 {
-    return runs(arch, arch == FACET_ARCH_SCALAR ? 0 : cpu_features());
-}
-
-facet_arch facet_arch_best(void)
-{
-    const unsigned features = cpu_features();
-    facet_arch best = FACET_ARCH_SCALAR;
-#define FACET_ARCH(id, name, word, needs, lanes) if (runs(FACET_ARCH_##id, features)) best = FACET_ARCH_##id;
+    facet_arch best = FACET_ARCH_BEST;
+#define FACET_ARCH(id, name, word, needs, lanes) if (arches >> FACET_ARCH_##id & 1) best = FACET_ARCH_##id;
 #include "arches.def"
     return best;
 }
+
+facet_arch facet_arch_best(void) { return facet_arch_best_of(facet_arches_among(~0u)); }

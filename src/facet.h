@@ -155,7 +155,7 @@ FACET_API int facet_value(facet_kind kind, const char *word);
 /* Whether this build holds the enumerator; for FACET_KIND_ARCH also whether this CPU runs it. */
 FACET_API bool facet_has(facet_kind kind, int value);
 
-/* What FACET_ARCH_BEST stands for on this CPU. */
+/* What FACET_ARCH_BEST stands for on this CPU: itself where the build holds nothing that it runs. */
 FACET_API facet_arch facet_arch_best(void);
 
 /* Lanes of an architecture's vectors: 1, 4, 8 or 16; 0 where the build lacks it. */
@@ -257,8 +257,9 @@ typedef struct facet_plan {
 } facet_plan;
 
 /* Compiles `material` for `target`. Validates everything; on refusal `*plan` is untouched and `*error` (may be NULL)
- * names the field. Takes about a microsecond, some more with FACET_ARCH_BEST, which asks the CPU, and up to 0.2 ms
- * more where the fast tier fits an exact Fresnel term (facet_plan_describe says how well). */
+ * names the field. Takes about a microsecond, and up to 0.2 ms more where the fast tier fits an exact Fresnel term
+ * (facet_plan_describe says how well). To ask an x86 CPU what it runs takes up to two cpuid instructions, which virtual
+ * machines trap: some microseconds there. */
 static inline facet_status facet_plan_init(facet_plan *plan, const facet_material *material, facet_target target,
                                            facet_error *error);
 

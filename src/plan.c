@@ -175,9 +175,9 @@ static facet_status resolve_target(facet_target *target, facet_error *error)
     if (status == FACET_ERROR_MODEL) return refuse(error, FACET_ERROR_ARCH, "target.tier", -1);
     if (status) return status;
     if (!facet_word(FACET_KIND_ARCH, (int)target->arch)) return refuse(error, FACET_ERROR_ENUM, "target.arch", -1);
-    if (target->arch == FACET_ARCH_BEST) target->arch = facet_arch_best();
-    else if (!facet_arch_runs(target->arch)) return refuse(error, FACET_ERROR_ARCH, "target.arch", -1);
-    return FACET_OK;
+    const uint32_t among = target->arch == FACET_ARCH_BEST ? ~0u : 1u << target->arch;
+    target->arch = facet_arch_best_of(facet_arches_among(among));
+    return target->arch == FACET_ARCH_BEST ? refuse(error, FACET_ERROR_ARCH, "target.arch", -1) : FACET_OK;
 }
 
 static void store3(float *to, vf3 a) { to[0] = a.x, to[1] = a.y, to[2] = a.z; }

@@ -94,7 +94,7 @@ int facet_value(facet_kind kind, const char *word)
 bool facet_has(facet_kind kind, int value)
 {
     const row *r = find(kind, value);
-    return r && r->built && (kind != FACET_KIND_ARCH || value == FACET_ARCH_BEST || facet_arch_runs((facet_arch)value));
+    return r && r->built && (kind != FACET_KIND_ARCH || value == FACET_ARCH_BEST || facet_arches_among(1u << value));
 }
 
 int facet_arch_lanes(facet_arch arch)
