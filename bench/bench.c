@@ -75,7 +75,7 @@ static void add_library(void)
     for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++)
         for (int arch = 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
             contender *c = &contenders[contender_count];
-            const facet_target target = { (facet_arch)arch, (facet_tier)tier };
+            const facet_target target = { .arch = (facet_arch)arch, .tier = (facet_tier)tier };
             if (facet_plan_init(&c->plan, &material, target, NULL)) continue;
             snprintf(c->name, sizeof c->name, "facet %s %s", facet_word(FACET_KIND_ARCH, arch),
                      facet_word(FACET_KIND_TIER, tier));

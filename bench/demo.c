@@ -94,13 +94,15 @@ static bool facet_refused(const facet_error *error)
 static bool make_plans(scene *s)
 {
     const options *o = s->options;
+    facet_target target = o->shading.target;
+    target.arches = facet_arches();
     s->columns = o->layout == LAYOUT_GRID ? GRID_COLUMNS : o->layout == LAYOUT_COMPARE ? 2 : 1;
     s->rows = o->layout == LAYOUT_GRID ? GRID_ROWS : 1;
     s->plan_count = s->columns * s->rows * s->mesh.parts;
     for (size_t i = 0; i < s->plan_count; i++) {
         facet_material material = plan_material(s, i);
         facet_error error;
-        if (facet_plan_init(&s->plans[i], &material, o->shading.target, &error) != FACET_OK)
+        if (facet_plan_init(&s->plans[i], &material, target, &error) != FACET_OK)
             return facet_refused(&error);
         s->streams |= shading_reads(&material) & FACET_STREAM_TANGENT;
     }

@@ -81,7 +81,7 @@ static size_t list_contenders(const facet_material *material, contender *c)
     size_t count = 0;
     for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++)
         for (int tier = 0; facet_word(FACET_KIND_TIER, tier) && count < TARGETS; tier++) {
-            c[count] = (contender){.target = {(facet_arch)arch, (facet_tier)tier}, .best = 1e30};
+            c[count] = (contender){.target = {.arch = (facet_arch)arch, .tier = (facet_tier)tier}, .best = 1e30};
             count += facet_plan_init(&c[count].plan, material, c[count].target, NULL) == FACET_OK;
         }
     return count;

@@ -85,4 +85,5 @@ facet_arch facet_arch_best_of(uint32_t arches)
     return best;
 }
 
-facet_arch facet_arch_best(void) { return facet_arch_best_of(facet_arches_among(~0u)); }
+uint32_t facet_arches(void) { return facet_arches_among(ARCHES_BUILT); }
+facet_arch facet_arch_best(void) { return facet_arch_best_of(facet_arches()); }

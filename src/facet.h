@@ -135,9 +135,14 @@ typedef enum facet_tier {
     FACET_TIER_STRICT            /* the same bytes on every arch, compiler and CPU */
 } facet_tier;
 
+/* What a plan is compiled for.
+ *   arches         facet_arches(), asked once for any number of plans; 0: facet_plan_init asks the CPU. BEST is the
+ *                  best of these, and another arch must be one of them. Bits may be left out. A bit that this CPU lacks
+ *                  makes plans for another: shading with them here ends in an illegal instruction. */
 typedef struct facet_target {
     facet_arch arch;
     facet_tier tier;
+    uint32_t arches;
 } facet_target;
 
 typedef enum facet_kind {
@@ -155,7 +160,10 @@ FACET_API int facet_value(facet_kind kind, const char *word);
 /* Whether this build holds the enumerator; for FACET_KIND_ARCH also whether this CPU runs it. */
 FACET_API bool facet_has(facet_kind kind, int value);
 
-/* What FACET_ARCH_BEST stands for on this CPU: itself where the build holds nothing that it runs. */
+/* The architectures that this build holds and this CPU runs, a bit each: 1u << FACET_ARCH_AVX2. Asks the CPU. */
+FACET_API uint32_t facet_arches(void);
+
+/* The best of these: what FACET_ARCH_BEST stands for on this CPU; itself where the build holds nothing that it runs. */
 FACET_API facet_arch facet_arch_best(void);
 
 /* Lanes of an architecture's vectors: 1, 4, 8 or 16; 0 where the build lacks it. */
@@ -259,7 +267,7 @@ typedef struct facet_plan {
 /* Compiles `material` for `target`. Validates everything; on refusal `*plan` is untouched and `*error` (may be NULL)
  * names the field. Takes about a microsecond, and up to 0.2 ms more where the fast tier fits an exact Fresnel term
  * (facet_plan_describe says how well). To ask an x86 CPU what it runs takes up to two cpuid instructions, which virtual
- * machines trap: some microseconds there. */
+ * machines trap: some microseconds there, spared by target.arches. */
 static inline facet_status facet_plan_init(facet_plan *plan, const facet_material *material, facet_target target,
                                            facet_error *error);
 
@@ -267,7 +275,7 @@ static inline facet_status facet_plan_init(facet_plan *plan, const facet_materia
  * the length without it. `text` may be NULL where `size` is 0. Returns 0 for what is not a plan. */
 FACET_API size_t facet_plan_describe(const facet_plan *plan, char *text, size_t size);
 
-/* What the plan was compiled for, with FACET_ARCH_BEST resolved; FACET_ARCH_BEST itself for what is not a plan. */
+/* What the plan was compiled for, with FACET_ARCH_BEST resolved and `arches` 0; all 0 for what is not a plan. */
 FACET_API facet_target facet_plan_target(const facet_plan *plan);
 
 /* ---- Shading --------------------------------------------------------------------------------------------------- */
@@ -464,7 +472,8 @@ FACET_API facet_status facet_index_of_spectrum(const float *wavelength, const fl
  * library does not know is not zero. Lights stand in an array, and must have this library's size. */
 
 FACET_API facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const facet_material *material,
-                                             size_t material_size, facet_target target, facet_error *error);
+                                             size_t material_size, const facet_target *target, size_t target_size,
+                                             facet_error *error);
 FACET_API facet_status facet_shade_sized(const facet_plan *plan, const facet_batch *batch, size_t batch_size,
                                          size_t light_size, facet_error *error);
 FACET_API facet_status facet_encode_sized(const facet_image *image, size_t image_size, facet_error *error);
@@ -472,7 +481,7 @@ FACET_API facet_status facet_encode_sized(const facet_image *image, size_t image
 static inline facet_status facet_plan_init(facet_plan *plan, const facet_material *material, facet_target target,
                                            facet_error *error)
 {
-    return facet_plan_init_sized(plan, sizeof *plan, material, sizeof *material, target, error);
+    return facet_plan_init_sized(plan, sizeof *plan, material, sizeof *material, &target, sizeof target, error);
 }
 
 static inline facet_status facet_shade(const facet_plan *plan, const facet_batch *batch, facet_error *error)

@@ -175,8 +175,10 @@ static facet_status resolve_target(facet_target *target, facet_error *error)
     if (status == FACET_ERROR_MODEL) return refuse(error, FACET_ERROR_ARCH, "target.tier", -1);
     if (status) return status;
     if (!facet_word(FACET_KIND_ARCH, (int)target->arch)) return refuse(error, FACET_ERROR_ENUM, "target.arch", -1);
-    const uint32_t among = target->arch == FACET_ARCH_BEST ? ~0u : 1u << target->arch;
-    target->arch = facet_arch_best_of(facet_arches_among(among));
+    if (target->arches >> ARCH_COUNT || target->arches & 1u << FACET_ARCH_BEST)
+        return refuse(error, FACET_ERROR_ENUM, "target.arches", -1);
+    const uint32_t among = target->arch == FACET_ARCH_BEST ? ARCHES_BUILT : ARCHES_BUILT & 1u << target->arch;
+    target->arch = facet_arch_best_of(target->arches ? target->arches & among : facet_arches_among(among));
     return target->arch == FACET_ARCH_BEST ? refuse(error, FACET_ERROR_ARCH, "target.arch", -1) : FACET_OK;
 }
 
@@ -370,9 +372,11 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
 }
 
 facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const facet_material *material,
-                                   size_t material_size, facet_target target, facet_error *error)
+                                   size_t material_size, const facet_target *target, size_t target_size,
+                                   facet_error *error)
 {
     facet_material own;
+    facet_target own_target;
     refuse(error, FACET_OK, 0, -1);
     if (!plan) return refuse(error, FACET_ERROR_NULL, "plan", -1);
     if (plan_size < sizeof *plan) return refuse(error, FACET_ERROR_SIZE, "plan", -1);
@@ -381,8 +385,11 @@ facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const fac
         if (!adopt(&own, sizeof own, material, material_size)) return refuse(error, FACET_ERROR_SIZE, "material", -1);
         material = &own;
     }
+    if (!target) return refuse(error, FACET_ERROR_NULL, "target", -1);
+    if (!adopt(&own_target, sizeof own_target, target, target_size))
+        return refuse(error, FACET_ERROR_SIZE, "target", -1);
     environment callers = environment_enter();
-    facet_status status = compile(plan, material, target, error);
+    facet_status status = compile(plan, material, own_target, error);
     environment_leave(callers);
     return status;
 }
@@ -390,6 +397,6 @@ facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const fac
 facet_target facet_plan_target(const facet_plan *opaque)
 {
     const plan_fields *p = (const plan_fields *)opaque;
-    if (!p || !plan_valid(p)) return (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST };
-    return (facet_target){ (facet_arch)p->arch, (facet_tier)p->tier };
+    if (!p || !plan_valid(p)) return (facet_target){ 0 };
+    return (facet_target){ .arch = (facet_arch)p->arch, .tier = (facet_tier)p->tier };
 }

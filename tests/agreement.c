@@ -44,7 +44,7 @@ static void set_sources(solitude *alone, const arrangement *a)
 static bool isolate(solitude *alone, const arrangement *a)
 {
     const bool strict = a->target.tier == FACET_TIER_STRICT;
-    const facet_target target = { strict ? FACET_ARCH_SCALAR : a->target.arch, a->target.tier };
+    const facet_target target = { strict ? FACET_ARCH_SCALAR : a->target.arch, a->target.tier, a->target.arches };
     set_sources(alone, a);
     for (int c = 0; c < COMPONENTS; c++) alone->at[c] = alone->one[c];
     const facet_material material = material_of(a, alone->sources);

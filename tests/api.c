@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 /* What a material may promise. */
 enum {
@@ -26,7 +27,7 @@ enum {
 
 _Static_assert(sizeof(facet_plan) == 512, "what callers keep in flash and in files");
 
-static const facet_target strict_scalar = { FACET_ARCH_SCALAR, FACET_TIER_STRICT };
+static const facet_target strict_scalar = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
 
 /* ---- Words ------------------------------------------------------------------------------------------------------- */
 
@@ -172,11 +173,103 @@ static void test_plan_bytes(void)
     for (int arch = FACET_ARCH_BEST; facet_word(FACET_KIND_ARCH, arch); arch++)
         for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++) {
             facet_plan plan;
-            if (facet_plan_init(&plan, &m, (facet_target){ (facet_arch)arch, (facet_tier)tier }, NULL)) continue;
+            const facet_target asked = { .arch = (facet_arch)arch, .tier = (facet_tier)tier };
+            if (facet_plan_init(&plan, &m, asked, NULL)) continue;
             const facet_target target = facet_plan_target(&plan);
             const facet_arch want = arch == FACET_ARCH_BEST ? facet_arch_best() : (facet_arch)arch;
             expect(target.arch == want && target.tier == (facet_tier)tier, "%d %d is %d %d", arch, tier,
                    (int)target.arch, (int)target.tier);
+        }
+}
+
+/* The one of these bits that is later in the list of architectures: they are listed slowest first. */
+static facet_arch last_of(uint32_t arches)
+{
+    int last = FACET_ARCH_BEST;
+    for (int arch = FACET_ARCH_SCALAR; facet_word(FACET_KIND_ARCH, arch); arch++)
+        if (arches >> arch & 1) last = arch;
+    return (facet_arch)last;
+}
+
+/* Plans for the architectures of `arches`, one by one and the best, as the bits say. */
+static void check_arches(const facet_material *m, uint32_t arches)
+{
+    for (int arch = FACET_ARCH_BEST; facet_word(FACET_KIND_ARCH, arch); arch++) {
+        const facet_arch want = arch == FACET_ARCH_BEST ? last_of(arches) : (facet_arch)arch;
+        const bool held = want != FACET_ARCH_BEST && facet_arch_lanes(want) && arches >> want & 1;
+        facet_plan plan;
+        facet_error error;
+        facet_plan_init(&plan, m, (facet_target){ .arch = (facet_arch)arch, .arches = arches }, &error);
+        expect(held ? !error.code : error.code == FACET_ERROR_ARCH && !strcmp(error.field, "target.arch"),
+               "%d of %x: status %d", arch, (unsigned)arches, (int)error.code);
+        expect(!held || facet_plan_target(&plan).arch == want, "%d of %x is %d", arch, (unsigned)arches,
+               (int)facet_plan_target(&plan).arch);
+    }
+}
+
+static void test_arches(void)
+{
+    const facet_material m = rich_material();
+    const uint32_t arches = facet_arches();
+    uint32_t built = 0;
+    test("facet_arches has a bit for what facet_has");
+    for (int arch = FACET_ARCH_BEST; arch < 32; arch++) {
+        const bool has = arch != FACET_ARCH_BEST && facet_has(FACET_KIND_ARCH, arch);
+        expect((arches >> arch & 1) == has, "bit %d of %x", arch, (unsigned)arches);
+        if (facet_arch_lanes((facet_arch)arch)) built |= 1u << arch;
+    }
+    expect(last_of(arches) == facet_arch_best(), "the best of %x is %d", (unsigned)arches, (int)facet_arch_best());
+
+    test("a plan takes what target.arches says, for another CPU too, instead of asking this one");
+    for (uint32_t among = 2; among < 1u << (FACET_ARCH_NEON + 1); among += 2)
+        if (!(among & ~built)) check_arches(&m, among);
+    check_arches(&m, ~built & ((2u << FACET_ARCH_NEON) - 2));
+    const facet_plan asked = make_plan(&m, (facet_target){ 0 });
+    const facet_plan told = make_plan(&m, (facet_target){ .arches = arches });
+    expect(!memcmp(&asked, &told, sizeof asked), "another plan");
+}
+
+static double seconds(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* The quickest of some plans: a machine with other work disturbs the rest. */
+static double plan_seconds(const facet_material *m, facet_target target)
+{
+    double least = 1;
+    for (int i = 0; i < 200; i++) {
+        facet_plan plan;
+        const double start = seconds();
+        facet_plan_init(&plan, m, target, NULL);
+        const double taken = seconds() - start;
+        least = taken < least ? taken : least;
+    }
+    return least;
+}
+
+/* Whether the fast tier fits the material's Fresnel term. */
+static bool is_exact(const facet_material *m)
+{
+    return m->fresnel.model == FACET_FRESNEL_DIELECTRIC || m->fresnel.model == FACET_FRESNEL_CONDUCTOR;
+}
+
+static void test_plan_time(void)
+{
+    test("a plan takes at most 20 us where the CPU is not asked and nothing is fitted");
+    if (test_slow_machine) {
+        skip("an emulator or a sanitizer");
+        return;
+    }
+    for (int i = 0; i < target_count(); i++)
+        for (int k = 0; k < case_count(); k++) {
+            const facet_material m = rich_material_of(case_at(k));
+            const facet_target target = target_at(i);
+            if (target.tier == FACET_TIER_FAST && is_exact(&m)) continue;
+            const double taken = plan_seconds(&m, target);
+            expect(taken <= 20e-6, "%s, %s: %.1f us", case_at(k)->name, target_words(target), 1e6 * taken);
         }
 }
 
@@ -312,7 +405,7 @@ static void test_material_sizes(void)
         memset(&given, 0xa5, sizeof given);
         resize(&given, size, &whole, sizeof whole);
         facet_plan_init(&want, &filled, strict_scalar, &want_error);
-        facet_plan_init_sized(&plan, sizeof plan, &given.m, size, strict_scalar, &error);
+        facet_plan_init_sized(&plan, sizeof plan, &given.m, size, &strict_scalar, sizeof strict_scalar, &error);
         expect(error.code == want_error.code && !memcmp(&plan, &want, sizeof plan), "%zu bytes: status %d, not %d",
                size, (int)error.code, (int)want_error.code);
     }
@@ -321,7 +414,8 @@ static void test_material_sizes(void)
         facet_error error;
         resize(&given, sizeof given, &whole, sizeof whole);
         given.tail[at - sizeof whole] = 1;
-        facet_plan_init_sized(&plan, sizeof plan, &given.m, sizeof whole + TAIL, strict_scalar, &error);
+        facet_plan_init_sized(&plan, sizeof plan, &given.m, sizeof whole + TAIL, &strict_scalar, sizeof strict_scalar,
+                              &error);
         expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "material") && plan.opaque[0] == 7,
                "byte %zu is taken", at);
     }
@@ -336,14 +430,47 @@ static void test_plan_sizes(void)
     test("a plan that is too small is refused; of a larger one the rest is untouched");
     memset(&given, 0xa5, sizeof given);
     for (size_t size = 0; size < sizeof want; size++) {
-        facet_plan_init_sized(&given.plan, size, &m, sizeof m, strict_scalar, &error);
+        facet_plan_init_sized(&given.plan, size, &m, sizeof m, &strict_scalar, sizeof strict_scalar, &error);
         expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "plan"), "%zu bytes: status %d", size,
                (int)error.code);
     }
     for (size_t i = 0; i < sizeof given; i++) expect(((unsigned char *)&given)[i] == 0xa5, "written on refusal");
-    facet_plan_init_sized(&given.plan, sizeof given, &m, sizeof m, strict_scalar, &error);
+    facet_plan_init_sized(&given.plan, sizeof given, &m, sizeof m, &strict_scalar, sizeof strict_scalar, &error);
     expect(error.code == FACET_OK && !memcmp(&given.plan, &want, sizeof want), "a larger plan differs");
     for (int i = 0; i < TAIL; i++) expect(given.beyond[i] == 0xa5, "byte %d behind the plan is written", i);
+}
+
+static void test_target_sizes(void)
+{
+    struct { facet_target target; unsigned char tail[TAIL]; } given;
+    const facet_target whole = { FACET_ARCH_SCALAR, FACET_TIER_STRICT, 1u << FACET_ARCH_SCALAR };
+    const facet_material m = rich_material();
+    test("a target cut short or made longer, alike; NULL is refused");
+    for (size_t size = 0; size <= sizeof whole + TAIL; size += sizeof(uint32_t)) {
+        facet_plan plan = { { 0 } }, want = { { 0 } };
+        facet_target filled;
+        facet_error error, want_error;
+        resize(&filled, sizeof filled, &whole, size < sizeof whole ? size : sizeof whole);
+        memset(&given, 0xa5, sizeof given);
+        resize(&given, size, &whole, sizeof whole);
+        facet_plan_init(&want, &m, filled, &want_error);
+        facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, &given.target, size, &error);
+        expect(error.code == want_error.code && !memcmp(&plan, &want, sizeof plan), "%zu bytes: status %d, not %d",
+               size, (int)error.code, (int)want_error.code);
+    }
+    for (size_t at = 0; at < TAIL; at++) {
+        facet_plan plan = { { 7 } };
+        facet_error error;
+        resize(&given, sizeof given, &whole, sizeof whole);
+        given.tail[at] = 1;
+        facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, &given.target, sizeof whole + TAIL, &error);
+        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "target") && plan.opaque[0] == 7,
+               "byte %zu is taken", at);
+    }
+    facet_plan plan;
+    facet_error error;
+    facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, NULL, sizeof whole, &error);
+    expect(error.code == FACET_ERROR_NULL && !strcmp(error.field, "target"), "NULL: status %d", (int)error.code);
 }
 
 static void test_batch_sizes(void)
@@ -499,7 +626,7 @@ static void test_empty(void)
 {
     sample_batch b = random_batch(8, 7);
     const facet_material m = rich_material();
-    const facet_plan plan = make_plan(&m, (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST });
+    const facet_plan plan = make_plan(&m, (facet_target){ 0 });
     size_t invalid = 5;
     test("a batch of no samples writes nothing");
     for (int c = 0; c < 3; c++) memset(b.batch.radiance[c], 0xa5, 8 * sizeof(float));
@@ -547,7 +674,7 @@ static void check_threads(bool shared)
     sample_batch batches[THREADS];
     facet_material m = rich_material();
     m.streams = ALL_STREAMS;
-    const facet_plan plan = make_plan(&m, (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST });
+    const facet_plan plan = make_plan(&m, (facet_target){ 0 });
     for (int i = 0; i < THREADS; i++) {
         batches[i] = random_batch(THREAD_SAMPLES, shared ? 8 : 8 + (uint64_t)i);
         facet_shade(&plan, &batches[i].batch, NULL);
@@ -571,10 +698,13 @@ void suite_api(void)
     test_build();
     test_refusals();
     test_plan_bytes();
+    test_arches();
+    test_plan_time();
     test_foreign_plans();
     test_descriptions();
     test_material_sizes();
     test_plan_sizes();
+    test_target_sizes();
     test_batch_sizes();
     test_image_sizes();
     test_lights_in_passes();

@@ -9,7 +9,7 @@ int main(void)
     const float zero = 0.0f, one = 1.0f;
     float radiance[3];
     unsigned char pixel[4];
-    facet_target target = { FACET_ARCH_BEST, FACET_TIER_STRICT };
+    facet_target target;
     facet_material material;
     facet_light light;
     facet_batch batch;
@@ -17,6 +17,9 @@ int main(void)
     facet_plan plan;
     facet_error error;
 
+    memset(&target, 0, sizeof target);
+    target.tier = FACET_TIER_STRICT;
+    target.arches = facet_arches();
     memset(&material, 0, sizeof material);
     material.diffuse.model = FACET_DIFFUSE_LAMBERT;
     memset(&light, 0, sizeof light);

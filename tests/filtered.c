@@ -88,7 +88,7 @@ static uint32_t shaded(const facet_plan *plan)
 
 static void try_material(const int *value)
 {
-    const facet_target target = { FACET_ARCH_SCALAR, FACET_TIER_STRICT };
+    const facet_target target = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
     const facet_material material = {
         .diffuse = { (facet_diffuse)value[0], { 0.5f, 0.25f, 0.75f }, 0.3f },
         .specular = { .model = (facet_distribution)value[1], .masking = (facet_masking)value[2],

@@ -217,7 +217,7 @@ static void check_plan(const char *what, facet_material m, facet_tier tier, cons
     test("%s", what);
     m.specular.model = FACET_DISTRIBUTION_GGX;
     m.specular.alpha = 0.2f;
-    const facet_target target = { FACET_ARCH_BEST, tier };
+    const facet_target target = { .tier = tier };
     if (!facet_has(FACET_KIND_TIER, (int)tier) || !facet_has(FACET_KIND_FRESNEL, (int)m.fresnel.model)) {
         skip("not in this build");
         return;

@@ -198,7 +198,7 @@ static void shade(const facet_material *m, facet_arch arch, const facet_batch *b
 {
     facet_plan plan;
     facet_error error;
-    facet_plan_init(&plan, m, (facet_target){ arch, FACET_TIER_STRICT }, &error);
+    facet_plan_init(&plan, m, (facet_target){ .arch = arch, .tier = FACET_TIER_STRICT }, &error);
     if (!error.code) facet_shade(&plan, b, &error);
     expect(!error.code, "%s is refused", error.field);
 }

@@ -150,7 +150,7 @@ static void fitted_model(void)
     const facet_material m = metal_of(FACET_FRESNEL_CONDUCTOR);
     facet_plan plan;
     difference d = { 0 };
-    if (facet_plan_init(&plan, &m, (facet_target){ FACET_ARCH_SCALAR, FACET_TIER_FAST }, NULL) || !is_fitted(&plan))
+    if (facet_plan_init(&plan, &m, (facet_target){ .arch = FACET_ARCH_SCALAR }, NULL) || !is_fitted(&plan))
         return;
     for (int i = 0; i < ANGLES; i++) {
         sample s = metal_at(0.1 * i * DEGREE, m.fresnel.eta, m.fresnel.k);
@@ -412,7 +412,8 @@ static bool print_panel(const panel *p)
     const facet_material m = promised(p);
     facet_plan plan;
     /* Strict, on one lane: the same bytes as on any other. */
-    if (facet_plan_init(&plan, &m, (facet_target){ FACET_ARCH_SCALAR, FACET_TIER_STRICT }, NULL)) return false;
+    const facet_target target = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
+    if (facet_plan_init(&plan, &m, target, NULL)) return false;
     printf("panel\t%s\t%s\t%s\t%s\n", p->name, p->title, p->x, p->stated);
     state = 1;
     for (int i = (int)p->least * A_DECADE; i <= (int)p->most * A_DECADE; i++)

@@ -34,7 +34,7 @@ enum {
 #include "models.def"
 };
 
-static const facet_target scalar = { FACET_ARCH_SCALAR, FACET_TIER_STRICT };
+static const facet_target scalar = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
 
 static bool is_error(const facet_error *e, facet_status code, const char *field, int index)
 {
@@ -293,6 +293,10 @@ static void test_targets(void)
     PLAN_REFUSES(t.arch = (facet_arch)-1, FACET_ERROR_ENUM, "target.arch", -1);
     PLAN_REFUSES(t.tier = (facet_tier)99, FACET_ERROR_ENUM, "target.tier", -1);
     PLAN_REFUSES(t.tier = (facet_tier)-1, FACET_ERROR_ENUM, "target.tier", -1);
+    PLAN_REFUSES(t.arches = 1u << FACET_ARCH_BEST, FACET_ERROR_ENUM, "target.arches", -1);
+    PLAN_REFUSES(t.arches = 3u << FACET_ARCH_BEST, FACET_ERROR_ENUM, "target.arches", -1);
+    PLAN_REFUSES(t.arches = 1u << (FACET_ARCH_NEON + 1), FACET_ERROR_ENUM, "target.arches", -1);
+    PLAN_REFUSES(t.arches = ~0u, FACET_ERROR_ENUM, "target.arches", -1);
     PLAN_ACCEPTS(t.arch = FACET_ARCH_BEST);
     int refused = 0;
     for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {

@@ -27,7 +27,7 @@ kernel_set kernels_of(const kernel_case *kernel, facet_tier tier, bool best_alon
     set.material.streams = kernel->promised;
     for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
         if (!facet_has(FACET_KIND_ARCH, arch) || (best_alone && arch != (int)facet_arch_best())) continue;
-        const facet_target target = { (facet_arch)arch, tier };
+        const facet_target target = { .arch = (facet_arch)arch, .tier = tier };
         facet_error error;
         const bool made = facet_plan_init(&set.plans[set.count], &set.material, target, &error) == FACET_OK;
         if (expect(made, "no plan: %s", error.field)) set.arches[set.count++] = target.arch;

@@ -3,6 +3,7 @@
  * values in bad_values.c. */
 #include "bad_values.h"
 #include "lights.h"
+#include "targets.h"
 
 #include <float.h>
 #include <math.h>
@@ -500,12 +501,10 @@ static void run_on_all_kernels(const trap *t, facet_target target)
 
 static void run_trap(const trap *t)
 {
-    for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++)
-        for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++) {
-            if (!facet_has(FACET_KIND_ARCH, arch) || !facet_has(FACET_KIND_TIER, tier)) continue;
-            test("%s, %s %s", t->name, facet_word(FACET_KIND_ARCH, arch), facet_word(FACET_KIND_TIER, tier));
-            run_on_all_kernels(t, (facet_target){ (facet_arch)arch, (facet_tier)tier });
-        }
+    for (int i = 0; i < target_count(); i++) {
+        test("%s, %s", t->name, target_words(target_at(i)));
+        run_on_all_kernels(t, target_at(i));
+    }
 }
 
 void suite_stability(void)

@@ -10,10 +10,11 @@ static int targets_found;
 
 static void find_targets(void)
 {
+    const uint32_t arches = facet_arches();
     for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++)
         for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++)
-            if (facet_has(FACET_KIND_ARCH, arch) && facet_has(FACET_KIND_TIER, tier) && targets_found < MOST_TARGETS)
-                targets[targets_found++] = (facet_target){ (facet_arch)arch, (facet_tier)tier };
+            if (arches >> arch & 1 && facet_has(FACET_KIND_TIER, tier) && targets_found < MOST_TARGETS)
+                targets[targets_found++] = (facet_target){ (facet_arch)arch, (facet_tier)tier, arches };
 }
 
 int target_count(void)
@@ -24,7 +25,7 @@ int target_count(void)
 
 facet_target target_at(int index)
 {
-    return index >= 0 && index < target_count() ? targets[index] : (facet_target){ FACET_ARCH_BEST, FACET_TIER_FAST };
+    return index >= 0 && index < target_count() ? targets[index] : (facet_target){ 0 };
 }
 
 const char *target_words(facet_target target)

@@ -1,4 +1,4 @@
-/* The targets that tests walk: every architecture and tier that this build holds and this CPU runs. */
+/* The targets that tests walk: every architecture and tier that this build holds and this CPU runs, asked once. */
 #ifndef TARGETS_H
 #define TARGETS_H
 

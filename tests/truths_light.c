@@ -109,7 +109,7 @@ static bool shade_one(facet_tier tier, const facet_material *m, const sample *s,
     facet_plan plan;
     facet_error error;
     sample_batch b = batch_of(s, 1);
-    const facet_status made = facet_plan_init(&plan, m, (facet_target){ FACET_ARCH_BEST, tier }, &error);
+    const facet_status made = facet_plan_init(&plan, m, (facet_target){ .tier = tier }, &error);
     if (made == FACET_ERROR_MODEL || made == FACET_ERROR_ARCH) skip("not in this build");
     else expect(!made, "no plan: %s", error.field);
     if (extra) {
@@ -281,7 +281,7 @@ static double library_flux(facet_tier tier, const facet_light *light)
     static double red[RINGS];
     facet_plan plan;
     const facet_material lambert = { .diffuse = { .model = FACET_DIFFUSE_LAMBERT, .albedo = { 1, 1, 1 } } };
-    if (facet_plan_init(&plan, &lambert, (facet_target){ FACET_ARCH_BEST, tier }, NULL)) return NAN;
+    if (facet_plan_init(&plan, &lambert, (facet_target){ .tier = tier }, NULL)) return NAN;
     rings_under(light, s);
     sample_batch b = batch_of(s, RINGS);
     expect(!facet_shade(&plan, &b.batch, NULL), "refused");
