@@ -110,29 +110,82 @@ $(BUILD)/facet-demo: $(DEMO:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
 demo: $(BUILD)/facet-demo ## shades a teapot into build/teapot.png and times every architecture
 	$(RUN) $(BUILD)/facet-demo -o $(BUILD)/teapot.png
 
-# The baselines, compiled as a user would compile them, by each compiler that is here.
-NATIVE   := -O3 -ffast-math -march=native
-CLANG    ?= $(firstword $(foreach c,clang clang-19 clang-14,$(shell command -v $c)))
-GCC      ?= $(shell command -v gcc)
-COMPILER.clang := $(CLANG)
+# ---- Benchmark -------------------------------------------------------------------------------------------------------
+
+# The baselines, compiled as a user would compile them, by each compiler that is here, at each width that the CPU has:
+# where what is built runs here.
+GCC   ?= $(shell command -v gcc)
+CLANG ?= $(firstword $(foreach c,clang clang-19 clang-14,$(shell command -v $c)))
+ISPC  ?= $(shell command -v ispc)
+HERE  := $(if $(RUN),,$(filter $(MACHINE),$(shell uname -m)))
+MORE  := $(if $(filter x86_64,$(HERE)),$(shell $(CC) -march=native -dM -E -x c /dev/null | grep -c __AVX512F__))
+BITS  := $(if $(MORE),256 $(if $(filter-out 0,$(MORE)),512),128)
+
 COMPILER.gcc   := $(GCC)
-BASELINES := $(if $(CLANG),clang_256 clang_512) $(if $(GCC),gcc_256 gcc_512)
+COMPILER.clang := $(CLANG)
+VECTORIZED := $(if $(HERE),$(foreach c,gcc clang,$(if $(COMPILER.$c),$(BITS:%=$c_%))))
+EXPLICIT   := $(if $(HERE),$(if $(ISPC),ispc))
+BASELINES  := literal $(VECTORIZED) $(EXPLICIT)
+SKIPPED    := $(if $(HERE),$(if $(GCC),,"gcc: none here") $(if $(CLANG),,"clang: none here") \
+    $(if $(ISPC),,"ispc: none here"),"all but literal: built for another machine")
 
-$(BUILD)/bench/tile_%.o: bench/autovectorized.c $(BUILD)/flags
+# Changes when what facet-bench is made of does.
+$(BUILD)/bench/built.def: FORCE
 	@mkdir -p $(@D)
-	$(say)$(COMPILER.$(call part,1)) -std=gnu11 $(WARN) $(NATIVE) -mprefer-vector-width=$(call part,2) \
-	    -DTILE_SHADER=tile_$* -c $< -o $@
+	@{ echo '/* What facet-bench was built with; the Makefile writes it. $(GCC) $(CLANG) $(ISPC) */'; \
+	    for macro in BASELINE PEAKS SKIPPED; do printf '%s\n' "#ifndef $$macro" "#define $$macro(...)" '#endif'; done; \
+	    printf 'BASELINE(%s)\n' $(BASELINES); printf 'PEAKS(%s)\n' $(ARCHES); \
+	    $(if $(strip $(SKIPPED)),printf 'SKIPPED("%s")\n' $(SKIPPED);) \
+	    printf '#undef %s\n' BASELINE PEAKS SKIPPED; } > $@.new
+	@cmp -s $@.new $@ || cp $@.new $@
 
-$(BUILD)/bench/textbook.o: override CFLAGS := -O2
-$(BUILD)/bench/bench.o: PROGRAM += $(if $(CLANG),-DBASELINE_CLANG) $(if $(GCC),-DBASELINE_GCC)
+NATIVE = -std=gnu11 $(WARN) -MMD -MP -Isrc -O3 -ffast-math -march=native
+WIDTH  = $(if $(filter x86_64,$(HERE)),-mprefer-vector-width=$(call part,2))
 
-BENCH := bench textbook $(BASELINES:%=tile_%)
+$(BUILD)/bench/vectorized_%.o: bench/autovectorized.c $(BUILD)/bench/built.def
+	@mkdir -p $(@D)
+	$(say)$(COMPILER.$(call part,1)) $(NATIVE) $(WIDTH) -DBASELINE=baseline_$* \
+	    -DBASELINE_NAME='"$(subst _,-,$*)"' -DBASELINE_BITS=$(call part,2) -c $< -o $@
 
-$(BUILD)/facet-bench: $(BENCH:%=$(BUILD)/bench/%.o) $(BUILD)/libfacet.a
+$(BUILD)/bench/tile_ispc.o: bench/tile.ispc $(BUILD)/bench/built.def
+	@mkdir -p $(@D)
+	$(say)$(ISPC) -O3 --opt=fast-math --pic $< -o $@
+
+$(BUILD)/bench/textbook.o: override CFLAGS += -O2
+$(BUILD)/bench/ispc.o: PROGRAM += -DBASELINE_BITS=$(lastword $(BITS))
+BASELINE_OBJECTS := textbook $(VECTORIZED:%=vectorized_%) $(EXPLICIT:%=ispc tile_ispc)
+
+# What an architecture's vectors do at best.
+FLAGS_PEAK.scalar := -DPEAK_SCALAR -fno-tree-vectorize -fno-tree-slp-vectorize
+
+$(BUILD)/bench/peaks_%.o: bench/peaks_arch.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(say)$(CC) $(PROGRAM) $(CPPFLAGS) $(CFLAGS) -O3 -ffp-contract=fast -fno-math-errno -fno-trapping-math \
+	    $(FLAGS.$*) $(FLAGS_PEAK.$*) -DPEAK_TABLE=peaks_$* -DPEAK_ARCH='"$*"' -c $< -o $@
+
+BENCH := bench $(addprefix bench_,contenders errors machine options report results rounds series streams work) \
+    command_line console $(ARCHES:%=peaks_%) $(BASELINE_OBJECTS)
+
+BUILT := $(addprefix $(BUILD)/,bench/bench_contenders.o bench/bench_machine.o tests/baselines.o)
+$(BUILT): $(BUILD)/bench/built.def
+$(BUILT): PROGRAM += -I$(BUILD)/bench
+$(BUILD)/bench/bench_results.o: PROGRAM += -DBENCH_CFLAGS='"$(CFLAGS)"'
+
+$(BUILD)/facet-bench: $(BENCH:%=$(BUILD)/bench/%.o) $(BUILD)/tests/cases.o $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-bench: $(BUILD)/facet-bench ## times every kernel and the baselines, interleaved
-	$(RUN) $(BUILD)/facet-bench
+# The baselines' errors, by the tests' reference.
+ERRORS := $(addprefix tests/,baselines bounds cases random reference samples) \
+    $(addprefix bench/,bench_work $(BASELINE_OBJECTS))
+
+$(BUILD)/baseline-errors: $(ERRORS:%=$(BUILD)/%.o) $(BUILD)/libfacet.a
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
+
+$(BUILD)/baselines.tsv: $(BUILD)/baseline-errors tests/accuracy.tsv
+	@$(RUN) $< tests > $@.new && mv $@.new $@
+
+bench: $(BUILD)/facet-bench $(BUILD)/baselines.tsv ## times the kernels and the baselines, interleaved
+	$(RUN) $(BUILD)/facet-bench --errors tests/accuracy.tsv,$(BUILD)/baselines.tsv
 
 # ---- Charts: speed against accuracy ----------------------------------------------------------------------------------
 
@@ -162,12 +215,13 @@ chart: $(BUILD)/facet-chart $(CHARTS)/errors.tsv $(if $(CHART),,$(CHARTS)/bench.
 # ---- Tests -----------------------------------------------------------------------------------------------------------
 
 # facet-check is every file of tests/ but other programs' and *_arch.c, which are compiled for each kernel.
-SUITES := $(filter-out consumer exr exr_variants filtered metals_table model_errors %_arch readme_tables relight, \
-    $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
+SUITES := $(filter-out baselines consumer exr exr_variants filtered metals_table model_errors %_arch readme_tables \
+    relight, $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
 LAYERS := $(foreach arch,$(ARCHES),$(foreach layer,ops elementary fits,$(TIERS:%=$(layer)_$(arch)_%)))
 
 # An emulator seldom finds the shared libraries of the other machine.
-$(addprefix $(BUILD)/,facet-check facet-demo metals-table readme-tables): private LDFLAGS += $(if $(RUN),-static)
+$(addprefix $(BUILD)/,facet-bench baseline-errors facet-check facet-demo metals-table readme-tables): \
+    private LDFLAGS += $(if $(RUN),-static)
 
 # ops_ARCH_TIER.o: the vector layer's operations as functions.
 $(BUILD)/tests/ops_%.o: tests/ops_arch.c $(BUILD)/flags

@@ -1,0 +1,34 @@
+/* What is timed: the workloads by name, which the baselines have too, and every kernel of tests/cases.c. */
+#ifndef BENCH_WORK_H
+#define BENCH_WORK_H
+
+#include "baseline.h"
+
+/* Operations of a sample: multiplications alone and with an addition, additions alone, divisions, square roots. */
+typedef struct {
+    int multiply, multiply_add, add, divide, sqrt;
+} operations;
+
+typedef struct work {
+    const char *name, *title;    /* no title: a kernel of tests/cases.c */
+    const char *kernel;          /* the one there whose errors are these; NULL: none, as F is fitted here */
+    facet_material material;
+    const facet_light *lights;
+    size_t light_count;
+    uint32_t streams;            /* FACET_STREAM_*: what comes per sample */
+    int shade;                   /* SHADE_* of the baselines, or -1 */
+    operations operations;       /* of a workload */
+} work;
+
+/* The workloads, then the kernels that this build holds. */
+int work_count(void);
+const work *work_at(int index);
+
+/* Floats that a sample reads and writes. */
+int work_loads(const work *w);
+enum { WORK_STORES = 3 };
+
+/* Workloads that share their formula with another: tile of samples that come from memory. */
+bool work_is_frame(const work *w);
+
+#endif
