@@ -16,6 +16,15 @@ relight() {
     program "" relight sh tests/relight.sh "$build"
 }
 
+bench() {
+    if [ -n "$RUN" ]; then
+        skip "bench" "not under an emulator"
+        return
+    fi
+    check "bench builds" make_in "$build" "$build/facet-bench" "$build/baselines.tsv"
+    program "" bench sh tests/bench.sh "$build"
+}
+
 sanitizers() {
     suite=sanitizers
     flags='-O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer'
@@ -37,6 +46,7 @@ everything() {
     job program "" ops sh tests/ops.sh "$build"
     job program "" demo sh tests/demo.sh "$build"
     job relight
+    job bench
     job program "" readme sh tests/readme.sh "$build"
     job program "" build sh tests/build.sh "$build"
     job program "" chart sh tests/chart.sh "$build"
