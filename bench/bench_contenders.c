@@ -51,7 +51,7 @@ static bool add_library(contenders *c, const work *w, int size, layout where, in
 {
     for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++)
         for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
-            const facet_target target = { (facet_arch)arch, (facet_tier)tier };
+            const facet_target target = { .arch = (facet_arch)arch, .tier = (facet_tier)tier };
             facet_plan plan;
             if ((only && only != arch) || facet_plan_init(&plan, &w->material, target, NULL)) continue;
             contender *one = add(c, w, size, where);

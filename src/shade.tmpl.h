@@ -227,7 +227,7 @@ OP choice choose_shader(const job *j)
     if (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                  \
         && p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                        \
         && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
-        && p->fits == FITS_##fresnel_ && !(FACET_STRICT && FITS_##fresnel_) && p->coupled == coupled_)                \
+        && (FACET_STRICT ? FITS_##fresnel_ == FITS_none : p->fits == FITS_##fresnel_) && p->coupled == coupled_)      \
         return (choice){ plain ? plain_##name : plain_lights ? lights_##name : shade_##name, plain };
 #include "special.def"
     return (choice){ shade_any, false };

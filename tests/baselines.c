@@ -170,7 +170,7 @@ static who library(const work *w, facet_tier tier)
 {
     who one = { .plan_count = 0 };
     for (int arch = FACET_ARCH_BEST + 1; facet_word(FACET_KIND_ARCH, arch); arch++) {
-        const facet_target target = { (facet_arch)arch, tier };
+        const facet_target target = { .arch = (facet_arch)arch, .tier = tier };
         one.plan_count += !facet_plan_init(&one.plans[one.plan_count], &w->material, target, NULL);
     }
     return one;
