@@ -215,8 +215,8 @@ chart: $(BUILD)/facet-chart $(CHARTS)/errors.tsv $(if $(CHART),,$(CHARTS)/bench.
 # ---- Tests -----------------------------------------------------------------------------------------------------------
 
 # facet-check is every file of tests/ but other programs' and *_arch.c, which are compiled for each kernel.
-SUITES := $(filter-out baselines consumer exr exr_variants filtered metals_table model_errors %_arch readme_tables \
-    relight, $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
+SUITES := $(filter-out baselines consumer cost exr exr_variants filtered metals_table model_errors %_arch \
+    readme_tables relight, $(patsubst tests/%.c,%,$(sort $(wildcard tests/*.c))))
 LAYERS := $(foreach arch,$(ARCHES),$(foreach layer,ops elementary fits,$(TIERS:%=$(layer)_$(arch)_%)))
 
 # An emulator seldom finds the shared libraries of the other machine.
@@ -254,6 +254,18 @@ check: ## every test that this machine can run; `make deps check` leaves none ou
 update: $(BUILD)/facet-check ## measures tests/accuracy.tsv and tests/golden.txt anew
 	$(RUN) $(BUILD)/facet-check --update accuracy golden
 
+# What a sample costs, in instructions and cycles.
+$(BUILD)/facet-cost: $(BUILD)/tests/cost.o $(BUILD)/tests/cases.o $(BUILD)/libfacet.a
+	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
+
+cost = MAKE='$(MAKE_COMMAND)' CC='$(CC)' CFLAGS='$(CFLAGS)' MODELS='$(MODELS)' RUN='$(RUN)' sh tests/cost.sh '$(BUILD)'
+
+check-cost: $(BUILD)/facet-cost ## whether a sample costs more than tests/cost.tsv says
+	@$(cost)
+
+update-cost: $(BUILD)/facet-cost ## measures tests/cost.tsv anew
+	@$(cost) update
+
 $(BUILD)/metals-table: $(BUILD)/tests/metals_table.o $(BUILD)/tests/spectra.o $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^
 
@@ -275,14 +287,14 @@ readme: $(BUILD)/readme-tables ## writes README.md's tables anew from src/*.def
 
 DEBIAN := binutils gcc gcc-12 gcc-11 g++ clang-14 clang-19 libc6-dev pkgconf libopenexr-dev gzip qemu-user \
     gcc-aarch64-linux-gnu libc6-dev-arm64-cross gcc-arm-linux-gnueabihf libc6-dev-armhf-cross \
-    gcc-s390x-linux-gnu libc6-dev-s390x-cross gcc-riscv64-linux-gnu libc6-dev-riscv64-cross
+    gcc-s390x-linux-gnu libc6-dev-s390x-cross gcc-riscv64-linux-gnu libc6-dev-riscv64-cross valgrind llvm-19
 
 # What it installs decides how the rest is built: with it among the goals they run one after the other, in their order.
 ifneq ($(filter deps,$(MAKECMDGOALS)),)
 .NOTPARALLEL:
 endif
 
-deps: ## installs the Debian packages that `make check` can use
+deps: ## installs the Debian packages that `make check` and check-cost can use
 	@command -v apt-get > /dev/null || { echo 'make deps: no apt-get here; the packages are: $(DEBIAN)' >&2; exit 1; }
 	@missing=; for package in $(DEBIAN); do \
 	    dpkg-query -W -f '$${Status}' $$package 2> /dev/null | grep -q ' installed' || missing="$$missing $$package"; \
@@ -312,7 +324,7 @@ uninstall: ## removes what install put there
 clean: ## removes what was built
 	rm -rf '$(BUILD)'
 
-.PHONY: metals readme update
+.PHONY: check-cost metals readme update update-cost
 
 help: ## lists the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 12
