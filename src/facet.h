@@ -334,7 +334,7 @@ enum {
  *                  neither counted nor written.
  *   radiance       may be one of the inputs, exactly; never a partial overlap.
  *   invalid        NULL, or raised by the number of covered samples that were not finite or had no normal. Counting
- *                  takes the generic kernel where a specialised one would do (README, Speed). */
+ *                  takes a slower kernel (README, Speed). */
 typedef struct facet_batch {
     size_t count;
     const float *normal[3], *view[3], *tangent[3], *position[3], *occlusion;

@@ -35,8 +35,8 @@ typedef struct {
     bool coupled, scaled, two_sided;
     bool sigma_given;        /* per sample */
     bool dense;              /* the batch is, and the group was not mended */
-    bool plain;              /* one directional light without streams, nothing else added, F90 1, and nobody counts
-                                what is invalid */
+    bool plain;              /* directional lights without streams, one-sided, F90 1, and nobody counts what is invalid */
+    bool shows;              /* of a plain batch: it has lights and nothing else, so that a NaN shows in the result */
 } features;
 
 /* ---- A group ----------------------------------------------------------------------------------------------------
@@ -68,9 +68,11 @@ OP vf in_domain(vf a, float low, float high)
     return a;
 }
 
-/* load_ID: vector k of a stream. */
+/* load_ID: vector k of a stream; what is not read is 0. */
 #define VALUE_1 vf
 #define VALUE_3 vf3
+#define NOTHING_1 splat(0.0f)
+#define NOTHING_3 ZERO3
 #define LOADED_1(id, low, high) in_domain(load(g, x.dense, COMPONENT_##id, k), low, high)
 #define LOADED_3(id, low, high)                                                                                       \
     (vf3){ in_domain(load(g, x.dense, COMPONENT_##id, k), low, high),                                                 \
@@ -81,6 +83,7 @@ OP vf in_domain(vf a, float low, float high)
     {                                                                                                                 \
         const plan_fields *p = g->plan;                                                                               \
         (void)p;                                                                                                      \
+        if (x.dense && !(x.streams & FACET_STREAM_##id)) return NOTHING_##components;                                 \
         return LOADED_##components(id, low, high);                                                                    \
     }
 #include "streams.def"

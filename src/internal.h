@@ -19,6 +19,8 @@
 #define FACET_BUILT_2(junk_or_comma) FACET_BUILT_SECOND(junk_or_comma 1, 0, 0)
 #define FACET_BUILT_1(value) FACET_BUILT_2(FACET_BUILT_COMMA_##value)
 #define FACET_BUILT(macro) FACET_BUILT_1(macro)
+#define FACET_WITH_fitted_dielectric FACET_WITH_dielectric
+#define FACET_WITH_fitted_conductor FACET_WITH_conductor
 #ifdef FACET_FILTERED
 #define FACET_HAS(name) FACET_BUILT(FACET_WITH_##name)
 #else
@@ -138,7 +140,7 @@ static inline bool index_per_sample(const plan_fields *p)
 /* One call of a kernel. */
 typedef struct job {
     const plan_fields *plan;
-    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else zeros */
+    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else the kernel's */
     size_t mask[COMPONENT_COUNT];        /* sample i stands at i & mask; the kernel's, of batches that are not dense */
     bool dense;                          /* every stream has a value per sample, none is derived */
     uint32_t streams;                    /* FACET_STREAM_*: are read: from the batch or, if uniform, from the plan */

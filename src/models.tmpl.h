@@ -35,6 +35,7 @@ OP vf3 cross(vf3 a, vf3 b)
 OP vf pow5(vf a) { vf a2 = a * a; return a2 * a2 * a; }
 
 OP vf not_negative(vf a) { return vf_max(a, splat(0.0f)); }
+OP vf at_least_0(vf a) { return vf_max(splat(0.0f), a); }        /* the same, but a NaN stays one */
 OP vf3 not_negative3(vf3 a) { return (vf3){ not_negative(a.x), not_negative(a.y), not_negative(a.z) }; }
 OP vf clamp(vf a, float low, float high) { return vf_min(vf_max(a, splat(low)), splat(high)); }
 OP vf3 clamp3(vf3 a, float low, float high)
@@ -126,7 +127,8 @@ OP vf3 oren_nayar_1994(surface s, incidence i, vf3 plus, bool interreflection)
     vf L1 = vf_mad(s.terms.B, C2 + C3, s.terms.A * i.nl);
     vf L2 = s.terms.C * i.nl * vf_nmad(cos_phi, b2, splat(1.0f));
     if (!interreflection) L2 = splat(0.0f);
-    return add3(plus, not_negative3(mul3(s.albedo, mad3(s.albedo, same3(L2), same3(L1)))));
+    vf3 sum = mul3(s.albedo, mad3(s.albedo, same3(L2), same3(L1)));
+    return add3(plus, (vf3){ at_least_0(sum.x), at_least_0(sum.y), at_least_0(sum.z) });
 }
 OP vf3 diffuse_oren_nayar_full(surface s, incidence i, vf3 plus) { return oren_nayar_1994(s, i, plus, true); }
 OP vf3 diffuse_oren_nayar_direct(surface s, incidence i, vf3 plus) { return oren_nayar_1994(s, i, plus, false); }
@@ -391,8 +393,11 @@ OP vf3 fresnel_one(surface s, incidence i, vf weight) { (void)s, (void)i; return
 
 OP vf3 fresnel_constant(surface s, incidence i, vf weight) { (void)i; return scale3(s.f0, weight); }
 
-/* 1 - vh, below 0 by rounding alone. */
-OP vf one_minus_vh(incidence i) { return vf_abs(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f))); }
+/* 1 - vh, below 0 by rounding alone, or where vectors are far from unit length. */
+OP vf one_minus_vh(incidence i)
+{
+    return vf_min(splat(1.0f), vf_abs(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f))));
+}
 
 /* Schlick 1994: F = f0 + (f90 - f0)(1 - vh)^5. */
 OP vf3 fresnel_schlick(surface s, incidence i, vf weight)
@@ -410,7 +415,7 @@ OP vf f82_corrected(vf f0, vf f82, vf c5, vf bump)
 }
 OP vf3 fresnel_schlick_f82(surface s, incidence i, vf weight)
 {
-    vf c = vf_min(one_minus_vh(i), splat(1.0f)), c5 = pow5(c), bump = vh(i) * c5 * c * 17.6513846f;   /* 7 (7/6)^6 */
+    vf c = one_minus_vh(i), c5 = pow5(c), bump = vh(i) * c5 * c * 17.6513846f;   /* 7 (7/6)^6 */
     vf3 F = { f82_corrected(s.f0.x, s.f82.x, c5, bump), f82_corrected(s.f0.y, s.f82.y, c5, bump),
               f82_corrected(s.f0.z, s.f82.z, c5, bump) };
     return scale3(F, weight);

@@ -29,7 +29,7 @@ OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 OP vf not_finite_1(vf a, vf sum) { return vf_mad(a, splat(0.0f), sum); }
 OP vf not_finite_3(vf3 a, vf sum) { return not_finite_1(a.x, not_finite_1(a.y, not_finite_1(a.z, sum))); }
 
-/* The streams that most batches have, and whose NaNs and infinities show in the result of a plain one. */
+/* The streams that most batches have, and whose NaNs and infinities show in the result (features.shows). */
 #define COMMON_STREAMS                                                                                                \
     ((uint32_t)(FACET_STREAM_NORMAL | FACET_STREAM_VIEW | FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA                    \
                 | FACET_STREAM_ALPHA | FACET_STREAM_F0))
@@ -40,7 +40,7 @@ OP vf no_vector(vf3 a) { return below(vf_abs(any_bits(a)), FLT_TRUE_MIN); }
 /* Leaves a sign where a sample of the group must be mended, but for what shows in its result. */
 OP vf odd_values(const group *g, features x, int k)
 {
-    const uint32_t looked_at = x.plain ? x.streams & ~COMMON_STREAMS : x.streams;
+    const uint32_t looked_at = x.shows ? x.streams & ~COMMON_STREAMS : x.streams;
     vf sum = splat(0.0f), odd = sum;
     if (!looked_at) return odd;
 #define LOOK_AT(which, id, components)                                                                                \
@@ -53,7 +53,7 @@ OP vf odd_values(const group *g, features x, int k)
 #include "streams.def"
         if (x.streams & FACET_STREAM_TANGENT) odd = no_vector(load_TANGENT(g, x, k));
     }
-    if (!x.plain) odd = vf_or(odd, no_vector(load_NORMAL(g, x, k)));
+    if (!x.shows) odd = vf_or(odd, no_vector(load_NORMAL(g, x, k)));
     return vf_or(odd, above(sum, FLT_MAX));
 }
 
@@ -196,6 +196,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
     {                                                                                                                 \
         features x = features_##name(j->given & FACET_STREAM_SIGMA);                                                  \
         x.plain = true;                                                                                               \
+        x.shows = !j->has_ambient && !j->has_emission;                                                                \
         return shade_block(j, x, b, at, invalid);                                                                     \
     }                                                                                                                 \
     static __attribute__((noinline)) size_t plain_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
@@ -203,7 +204,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
         const bool reads_sigma = DIFFUSE_READS_##diffuse_ & FACET_STREAM_SIGMA;                                       \
         features x = features_##name(reads_sigma);                                                                    \
         (void)invalid;                                                                                                \
-        x.plain = x.dense = true;                                                                                     \
+        x.plain = x.shows = x.dense = true;                                                                           \
         if (j->dense) return shade_plain(j, x, b, at);                                                                \
         x.dense = false;                                                                                              \
         if (!reads_sigma || j->given & FACET_STREAM_SIGMA) return shade_plain(j, x, b, at);                           \
@@ -416,26 +417,21 @@ static __attribute__((noinline)) void derive(const job *j, const block *b, block
     }
 }
 
-/* Points a stream's components to `values`. */
-OP void place(job *j, int stream, block_values values, size_t mask)
-{
-    for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
-        j->component[c] = values[c];
-        j->mask[c] = mask;
-    }
-}
-
-/* Finds a place for what is uniform, the material's numbers too, and for what is derived. */
+/* Finds a place for what has not a value per sample: in `values` for what is uniform, the material's numbers too, and for
+ * what is derived; zeros for what is not read. */
 static __attribute__((noinline)) void place_values(job *j, block_values values)
 {
-    for (int c = 0; c < COMPONENT_COUNT; c++) j->mask[c] = ~(size_t)0;
-    for (uint32_t left = j->uniform; left; left &= left - 1) {
-        const int stream = __builtin_ctz(left), first = streams[stream].first;
-        for (int c = first; c < first + streams[stream].components; c++)
-            EVERY(k) vf_store(values[c] + k * VF_LANES, splat(*j->component[c]));
-        place(j, stream, values, 0);
+    static const float zeros[GROUP];
+    for (int stream = 0; stream < STREAM_COUNT; stream++) {
+        const bool derived = j->plan->derived >> stream & 1, uniform = j->uniform >> stream & 1;
+        const bool given = !uniform && j->streams >> stream & 1;
+        for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
+            j->mask[c] = given ? ~(size_t)0 : derived ? BLOCK - 1 : 0;
+            if (given) continue;
+            if (uniform) EVERY(k) vf_store(values[c] + k * VF_LANES, splat(*j->component[c]));
+            j->component[c] = uniform || derived ? values[c] : zeros;
+        }
     }
-    for (uint32_t left = j->plan->derived; left; left &= left - 1) place(j, __builtin_ctz(left), values, BLOCK - 1);
 }
 
 void KERNEL(job *j)

@@ -28,11 +28,12 @@ typedef struct {
     size_t invalid;
 } solitude;
 
-/* A parameter's number and a stream of that number give the same bytes; but for those that follow from others: in the
- * fast tier what computes them may fuse where the plan does not. */
+/* A parameter's number and a stream of that number give the same bytes; but in the fast tier, for those that follow from
+ * others, as what computes them may fuse where the plan does not, and for an index, whose Fresnel term may be fitted. */
 static void set_sources(solitude *alone, const arrangement *a)
 {
-    const bool as_numbers = a->target.tier == FACET_TIER_FAST && is_derived(a->recipe);
+    const bool as_numbers = a->target.tier == FACET_TIER_FAST
+                            && (is_derived(a->recipe) || a->reads & FACET_STREAM_ETA);
     for (int s = 0; s < INPUTS; s++) {
         const bool absent = a->sources[s] == ELSEWHERE && is_optional(s);
         const bool kept = a->sources[s] == ELSEWHERE && as_numbers && s < BATCH_STREAMS;
