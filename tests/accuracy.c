@@ -277,16 +277,36 @@ static bool drop_terms(accuracy_row *row)
     return dropped;
 }
 
+static double worst_term(const accuracy_row *row)
+{
+    double worst = 0;
+    for (int goal = GOAL_REL; goal <= GOAL_PEAK; goal++) worst = fmax(worst, row->worst[goal].reached);
+    return worst;
+}
+
+/* Lowers what is slack beside the others. True where there was such a term. */
+static bool lower_terms(accuracy_row *row)
+{
+    const double enough = 0.75 * worst_term(row);
+    bool lowered = false;
+    for (int goal = GOAL_REL; goal <= GOAL_PEAK; goal++) {
+        const double reached = row->worst[goal].reached;
+        if (row->bound.limit[goal] == 0 || reached >= enough) continue;
+        row->bound.limit[goal] *= 0.5 * (1 + reached / enough);
+        lowered = true;
+    }
+    return lowered;
+}
+
 /* Then all alike: so that the worst of all is the margin below the bound. */
 static void scale(const kernel_case *kernel, search_effort how, accuracy_row *row)
 {
     error_bound *b = &row->bound;
+    int rounds = 0;
     do search_worst(kernel, row->tier, b, how, row->worst);
-    while (drop_terms(row));
-    double worst_term = 0;
-    for (int goal = GOAL_REL; goal <= GOAL_PEAK; goal++) worst_term = fmax(worst_term, row->worst[goal].reached);
+    while (drop_terms(row) || (rounds++ < 8 && lower_terms(row)));
     for (int goal = 0; goal < GOALS; goal++) {
-        const double reached = goal == GOAL_PLAIN ? row->worst[goal].reached : worst_term;
+        const double reached = goal == GOAL_PLAIN ? row->worst[goal].reached : worst_term(row);
         b->limit[goal] = round_up(margin * b->limit[goal] * reached);
     }
     const kernel_set set = kernels_of(kernel, row->tier, false);
