@@ -2,7 +2,7 @@
 #ifndef FACET_ARCH_SSE2_H
 #define FACET_ARCH_SSE2_H
 
-#include <emmintrin.h>
+#include <immintrin.h>
 #include <stdint.h>
 
 #define OP static inline __attribute__((always_inline, unused))
