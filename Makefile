@@ -198,7 +198,7 @@ DRAWS  := chart chart_data chart_parts chart_scatter chart_speed chart_models ch
 $(BUILD)/facet-chart: $(DRAWS:%=$(BUILD)/bench/%.o)
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
-$(BUILD)/model-errors: $(BUILD)/tests/model_errors.o $(BUILD)/tests/reference.o $(BUILD)/libfacet.a
+$(BUILD)/model-errors: $(patsubst %,$(BUILD)/tests/%.o,model_errors random reference) $(BUILD)/libfacet.a
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 $(CHARTS)/errors.tsv: $(BUILD)/model-errors

@@ -68,7 +68,8 @@ static void put_numbers(writer *w, const char *name, const float *a, int count)
 /* A parameter that the models or other parameters are made of: its numbers, or where they come from. */
 static void put_parameter(writer *w, const plan_fields *p, uint32_t stream, const char *name, const float *a, int count)
 {
-    const uint32_t fitted = !p->fits ? 0 : p->fresnel == FACET_FRESNEL_DIELECTRIC ? FACET_STREAM_ETA : FACET_STREAM_ETA | FACET_STREAM_K;
+    const uint32_t extinction = p->fresnel == FACET_FRESNEL_CONDUCTOR ? FACET_STREAM_K : 0;
+    const uint32_t fitted = p->fits ? FACET_STREAM_ETA | extinction : 0;
     if (!((p->needed | p->sources | fitted) & stream)) return;
     put(w, ", ");
     if (p->promised & stream || p->derived & stream) {

@@ -8,7 +8,7 @@
 enum { POINTS = 128, STEP = 4, NODES = POINTS / STEP, UNKNOWNS = 2 * FIT_DEGREE, ROWS = NODES + FIT_DEGREE };
 
 #define ROUNDING 0x1p-24     /* of one float operation, relative */
-#define BETWEEN  1.05        /* the error between points over that at them: of fits that are accepted, 1.011 was found */
+#define BETWEEN  1.05        /* the error between points over that at them: of accepted fits, 1.011 was found */
 
 /* Within 2^-48: the error of the float root, squared. Some FPUs have no root of a double. */
 static double root(double x)
@@ -30,8 +30,8 @@ static double reflectance(double n, double k, double parallel, double c)
     return Rs * (1.0 - parallel + parallel * (minus * minus + bc2) / (plus * plus + bc2));
 }
 
-/* F at the points, which go from 0 to 1. They are as dense at both ends as Chebyshev's, and half of them lie below about
- * 1/|n|, where F is least. */
+/* F at the points, which go from 0 to 1. They are as dense at both ends as Chebyshev's, and half of them lie below
+ * about 1/|n|, where F is least. */
 typedef struct { double c[POINTS + 1], F[POINTS + 1]; } curve;
 
 static void sample(double n, double k, double parallel, curve *at)

@@ -35,7 +35,7 @@ typedef struct {
     bool coupled, scaled, two_sided;
     bool sigma_given;        /* per sample */
     bool dense;              /* the batch is, and the group was not mended */
-    bool plain;              /* directional lights without streams, one-sided, F90 1, and nobody counts what is invalid */
+    bool plain;              /* directional lights without streams, one-sided, F90 1, nobody counts what is invalid */
     bool shows;              /* of a plain batch: it has lights and nothing else, so that a NaN shows in the result */
 } features;
 
@@ -134,7 +134,7 @@ OP void prepare(group *g, features x)
 #define FACET_DIFFUSE(id, name, word, reads, properties, ...)                                                         \
     case FACET_DIFFUSE_##id:                                                                                          \
         if (FACET_HAS(name) && ((reads) & FACET_STREAM_SIGMA))                                                        \
-            EACH(k) g->terms[k] = terms_##name(load_SIGMA(g, x, k));                                                    \
+            EACH(k) g->terms[k] = terms_##name(load_SIGMA(g, x, k));                                                  \
         break;
 #include "models.def"
     }
@@ -348,8 +348,7 @@ OP void add_diffuse(const group *g, features x, const incidence *t, bool mended,
 }
 
 /* The same where the diffuse part is what F leaves: f = diffuse (1 - F) + F D V. */
-OP void add_coupled(const group *g, features x, const incidence *t, bool mended, const vf *DV,
-                    vf3 *f)
+OP void add_coupled(const group *g, features x, const incidence *t, bool mended, const vf *DV, vf3 *f)
 {
     vf one[VECTORS];
     vf3 F[VECTORS], zero[VECTORS];

@@ -167,8 +167,9 @@ kernel *facet_kernel(facet_arch arch, facet_tier tier);
 /* What a plan's first words add up to, each times an odd constant: another byte anywhere is another sum. */
 static inline uint32_t plan_sum(const plan_fields *p)
 {
-    return PLAN_MAGIC + p->rows[0] * 0x9e3779b1u + p->rows[1] * 0x85ebca6bu + p->rows[2] * 0xc2b2ae35u + p->rows[3] * 0x2545f491u
-         + p->promised * 0x27d4eb2fu + p->needed * 0x165667b1u + p->derived * 0xd3a2646du + p->sources * 0xfd7046c5u;
+    return PLAN_MAGIC + p->rows[0] * 0x9e3779b1u + p->rows[1] * 0x85ebca6bu + p->rows[2] * 0xc2b2ae35u
+         + p->rows[3] * 0x2545f491u + p->promised * 0x27d4eb2fu + p->needed * 0x165667b1u + p->derived * 0xd3a2646du
+         + p->sources * 0xfd7046c5u;
 }
 
 /* Whether these bytes are a plan of this library, as facet_plan_init made it, for a kernel that it has. */

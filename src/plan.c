@@ -318,7 +318,7 @@ static void compile_specular(plan_fields *p, const facet_material *m)
     p->visibility = (uint8_t)find_visibility((int)m->specular.masking, (int)m->specular.model);
 }
 
-/* In the fast tier numbers of an exact Fresnel term become a rational function of the cosine per channel, if all can. */
+/* In the fast tier numbers of an exact Fresnel term become a rational function of the cosine a channel, if all can. */
 static void fit_fresnel(plan_fields *p)
 {
     if (p->tier != FACET_TIER_FAST || !(p->fresnel_properties & MEDIA) || index_per_sample(p)) return;

@@ -186,7 +186,6 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
     static __attribute__((noinline)) size_t shade_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
     {                                                                                                                 \
         features x = features_##name(j->given & FACET_STREAM_SIGMA);                                                  \
-        if (!(any_)) return shade_any(j, b, at, invalid);                                                             \
         x.streams |= streams_read(j);                                                                                 \
         x.scaled = j->plan->scale != 1.0f;                                                                            \
         x.two_sided = j->flags & FACET_TWO_SIDED;                                                                     \
@@ -219,7 +218,8 @@ typedef struct { block_shader *shade; bool plain; } choice;
 OP choice choose_shader(const job *j)
 {
     const plan_fields *p = j->plan;
-    const bool plain_lights = !j->check_lights && !j->invalid && j->light_count && !(j->streams & FACET_STREAM_OCCLUSION)
+    const bool plain_lights = j->light_count && !j->check_lights && !j->invalid
+                              && !(j->streams & FACET_STREAM_OCCLUSION)
                               && p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f)
                               && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
     const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !j->has_emission;
@@ -229,7 +229,8 @@ OP choice choose_shader(const job *j)
         && p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                        \
         && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
         && (FACET_STRICT ? FITS_##fresnel_ == FITS_none : p->fits == FITS_##fresnel_) && p->coupled == coupled_)      \
-        return (choice){ plain ? plain_##name : plain_lights ? lights_##name : shade_##name, plain };
+        return (choice){ plain ? plain_##name : plain_lights ? lights_##name : (any_) ? shade_##name : shade_any,     \
+                         plain };
 #include "special.def"
     return (choice){ shade_any, false };
 }
@@ -253,8 +254,8 @@ OP const float *values_at(const job *j, int c, size_t i)
 #define EVERY(k) _Pragma("GCC unroll 4") for (int k = 0; k < VECTORS; k++)
 
 /* A component of b's samples at `at`, with zeros behind the end, clamped to its domain. */
-static __attribute__((noinline)) void mend_component(const job *j, const block *b, int c, size_t at, float low, float high, float *values,
-                           vf *is_finite)
+static __attribute__((noinline)) void mend_component(const job *j, const block *b, int c, size_t at, float low,
+                                                     float high, float *values, vf *is_finite)
 {
     const size_t count = b->count - at < GROUP ? b->count - at : GROUP;
     const float *from = values_at(j, c, b->i + at);
@@ -362,7 +363,7 @@ OP vf source(const job *j, const block *b, int component, size_t at, float low, 
 
 #define SOURCE_1(id, low, high) source(j, b, COMPONENT_##id, at, low, high)
 #define SOURCE_3(id, low, high)                                                                                       \
-    (vf3){ source(j, b, COMPONENT_##id, at, low, high), source(j, b, COMPONENT_##id + 1, at, low, high),                    \
+    (vf3){ source(j, b, COMPONENT_##id, at, low, high), source(j, b, COMPONENT_##id + 1, at, low, high),              \
            source(j, b, COMPONENT_##id + 2, at, low, high) }
 #define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
     OP VALUE_##components source_##id(const job *j, const block *b, size_t at)                                        \
@@ -417,8 +418,8 @@ static __attribute__((noinline)) void derive(const job *j, const block *b, block
     }
 }
 
-/* Finds a place for what has not a value per sample: in `values` for what is uniform, the material's numbers too, and for
- * what is derived; zeros for what is not read. */
+/* Finds a place for what has not a value per sample: in `values` for what is uniform, the material's numbers too, and
+ * for what is derived; zeros for what is not read. */
 static __attribute__((noinline)) void place_values(job *j, block_values values)
 {
     static const float zeros[GROUP];

@@ -8,6 +8,7 @@
  *                                              kernel, want in double; LOST: the share of samples where the textbook's
  *                                              is NaN or infinite, which TEXTBOOK leaves out; "-" where that is all
  * The same lines everywhere, as far as libm's float functions are the same. */
+#include "harness.h"
 #include "reference.h"
 
 #include <math.h>
@@ -183,15 +184,11 @@ static void fresnel_ladder(void)
 
 /* ---- Random samples ---------------------------------------------------------------------------------------------- */
 
-static uint64_t state;
+static test_random randomness;
 
-/* SplitMix64. */
 static double random_between(double least, double most)
 {
-    uint64_t z = state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return least + (most - least) * (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
+    return least + (most - least) * random_unit(&randomness);
 }
 
 static double dot(const double *a, const double *b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -415,7 +412,7 @@ static bool print_panel(const panel *p)
     const facet_target target = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
     if (facet_plan_init(&plan, &m, target, NULL)) return false;
     printf("panel\t%s\t%s\t%s\t%s\n", p->name, p->title, p->x, p->stated);
-    state = 1;
+    randomness.state = 1;
     for (int i = (int)p->least * A_DECADE; i <= (int)p->most * A_DECADE; i++)
         print_point(p, &m, &plan, pow(10, (double)i / (double)A_DECADE));
     return true;

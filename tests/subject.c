@@ -32,7 +32,8 @@ static size_t shade_batch(const subject *u, const facet_plan *plan, const extras
     size_t invalid = 0;
     facet_error error;
     sample_batch b = batch_of(s, count);
-    facet_light light = b.batch.lights[0];
+    const facet_light sun = { .direction = { 0.48f, 0.6f, 0.64f }, .irradiance = { 1, 2, 3 } };
+    facet_light light = x->sun ? sun : b.batch.lights[0];
     light.visibility = x->visibility;
     b.batch.lights = &light;
     alias_sources(&b.batch);
@@ -41,7 +42,7 @@ static size_t shade_batch(const subject *u, const facet_plan *plan, const extras
     b.batch.occlusion = x->occlusion;
     b.batch.coverage = x->coverage;
     b.batch.flags = x->flags;
-    b.batch.invalid = &invalid;
+    b.batch.invalid = x->uncounted ? NULL : &invalid;
     for (int i = 0; i < count; i++)
         for (int c = 0; c < 3; c++) b.batch.radiance[c][i] = out[i][c];
     const facet_status status = facet_shade(plan, &b.batch, &error);
@@ -87,6 +88,22 @@ static size_t shade_amidst(const subject *u, const facet_plan *plan, const extra
     return invalid;
 }
 
+/* Under one light for all, where nobody counts, kernels take what shows in the result for granted: the same bytes. */
+static void expect_same_uncounted(const subject *u, const facet_plan *plan, const extras *x, const sample *s, int count,
+                                  const rgb *destination)
+{
+    extras counted = *x, uncounted;
+    rgb want[MOST], got[MOST];
+    memcpy(want, destination, (size_t)count * sizeof *want);
+    memcpy(got, destination, (size_t)count * sizeof *got);
+    counted.sun = true;
+    uncounted = counted;
+    uncounted.uncounted = true;
+    shade_amidst(u, plan, &counted, s, count, want);
+    shade_amidst(u, plan, &uncounted, s, count, got);
+    expect_same(u, got, want, count, "uncounted");
+}
+
 size_t shade_material(const subject *u, const facet_material *m, const extras *x, const sample *s, int count, rgb *out)
 {
     static const extras none;
@@ -101,6 +118,7 @@ size_t shade_material(const subject *u, const facet_material *m, const extras *x
 
     if (!(x->flags & FACET_ACCUMULATE) && !x->coverage) memset(out, 0, (size_t)count * sizeof *out);
     memcpy(amidst, out, (size_t)count * sizeof *out);
+    if (!s->light) expect_same_uncounted(u, &plan, x, s, count, out);
     const size_t invalid = shade_batch(u, &plan, x, s, count, out);
     const size_t invalid_amidst = shade_amidst(u, &plan, x, s, count, amidst);
     expect(invalid_amidst == invalid, "%s: %zu invalid samples, but %zu amidst others", u->kernel->name, invalid,

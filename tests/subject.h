@@ -21,6 +21,8 @@ typedef struct {
     const float *visibility, *occlusion;
     const uint8_t *coverage;
     uint32_t flags;
+    bool sun;                    /* one light for all in place of the samples' own */
+    bool uncounted;              /* nobody asks how many are invalid */
 } extras;
 
 typedef float rgb[3];
