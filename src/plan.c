@@ -325,7 +325,7 @@ static void fit_fresnel(plan_fields *p)
     fresnel_fit fit[3];
     int fits = 1;
     for (int c = 1; c < 3; c++)
-        if (bits_of(p->eta[c]) != bits_of(p->eta[0]) || bits_of(p->k[c]) != bits_of(p->k[0])) fits = 3;
+        if (p->eta[c] != p->eta[0] || p->k[c] != p->k[0]) fits = 3;
     float worst = 0.0f;
     for (int c = 0; c < fits; c++) {
         const float error = facet_fit_fresnel(&fit[c], p->eta[c], p->k[c], p->eta_outside, p->polarisation);
