@@ -14,7 +14,7 @@ MACHINE := $(firstword $(subst -, ,$(shell $(CC) -dumpmachine)))
 # ---- What is built: an architecture is arch/NAME.h, a row in src/arches.def, and its flags here ----------------------
 
 FLAGS.sse41  := -msse4.1
-FLAGS.avx2   := -mavx2 -mfma
+FLAGS.avx2   := -mavx2 -mfma -mf16c
 FLAGS.avx512 := -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 
 # How gcc orders a kernel's instructions: for latency before registers are handed out, as long as these suffice. 2 to 9 %.

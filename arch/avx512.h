@@ -17,6 +17,7 @@ typedef struct { __mmask16 m; } vm;
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
+OP void vf_store_half(uint16_t *p, vf a) { _mm256_storeu_si256((__m256i_u *)p, _mm512_cvtps_ph(a, 0)); }
 OP vf vf_splat(float a) { return _mm512_set1_ps(a); }
 
 OP vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }

@@ -1,5 +1,6 @@
 /* The vector layer, one lane: plain C, and the meaning of every operation of every other header here.
  *
+ * vf_load and vf_store keep the bits of whatever has a float's alignment.
  * vf: VF_LANES floats, with native + - * / alone (each rounds to nearest, lane by lane). vm: a mask, opaque.
  * Comparisons are false where an operand is NaN. FACET_STRICT 1: vf_mad and vf_nmad round twice, as everywhere;
  * 0: once where the ISA fuses. VF_INTERLEAVE: vectors that a kernel takes side by side. */
@@ -11,14 +12,24 @@
 #define OP static inline __attribute__((always_inline, unused))
 
 typedef float vf;
+typedef float __attribute__((may_alias)) vf_memory;
 typedef struct { int m; } vm;
 
 #define VF_LANES 1
 #define VF_INTERLEAVE 1
 
-OP vf vf_load(const float *p) { return *p; }
-OP void vf_store(float *p, vf a) { *p = a; }
+OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
+OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
 OP vf vf_splat(float a) { return a; }
+
+/* IEEE 754 binary16 of 0 <= a <= 65504, to nearest, ties to even; addresses have a uint16_t's alignment. */
+OP void vf_store_half(uint16_t *p, vf a)
+{
+    const uint32_t bits = ((union { float f; uint32_t u; }){ .f = a }).u, odd = bits >> 13 & 1;
+    const float sum = a + 0.5f;     /* below 2^-14: the sum's last place is that of the least half */
+    const uint32_t small = ((union { float f; uint32_t u; }){ .f = sum }).u - 0x3f000000;
+    *p = (uint16_t)(a < 0x1p-14f ? small : (bits - 0x38000000 + 0xfff + odd) >> 13);
+}
 
 OP vf vf_sqrt(vf a) { return __builtin_sqrtf(a); }
 OP vf vf_min(vf a, vf b) { return a < b ? a : b; }

@@ -19,6 +19,17 @@ OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
 OP vf vf_splat(float a) { return _mm_set1_ps(a); }
 
+/* As scalar.h has it. */
+OP void vf_store_half(uint16_t *p, vf a)
+{
+    __m128i bits = _mm_castps_si128(a), odd = _mm_and_si128(_mm_srli_epi32(bits, 13), _mm_set1_epi32(1));
+    __m128i least = _mm_sub_epi32(_mm_castps_si128(a + 0.5f), _mm_set1_epi32(0x3f000000));
+    bits = _mm_srli_epi32(_mm_add_epi32(_mm_sub_epi32(bits, _mm_set1_epi32(0x38000000 - 0xfff)), odd), 13);
+    __m128i small = _mm_castps_si128(_mm_cmplt_ps(a, _mm_set1_ps(0x1p-14f)));
+    bits = _mm_or_si128(_mm_and_si128(small, least), _mm_andnot_si128(small, bits));
+    _mm_storel_epi64((__m128i_u *)p, _mm_packs_epi32(bits, bits));
+}
+
 OP vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
 OP vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
 OP vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }

@@ -1,7 +1,7 @@
 /* What this CPU runs: which architectures, and the best of them. */
 #include "cpu.h"
 
-enum { CPU_SSE2 = 1, CPU_SSE41 = 2, CPU_FMA = 4, CPU_AVX2 = 8, CPU_AVX512 = 16, CPU_NEON = 32 };
+enum { CPU_SSE2 = 1, CPU_SSE41 = 2, CPU_FMA_F16C = 4, CPU_AVX2 = 8, CPU_AVX512 = 16, CPU_NEON = 32 };
 
 /* What this file's own flags let the compiler use anywhere, so that nobody needs to ask: SSE2 on x86-64, NEON on
  * aarch64, and with -march=native what the building machine has. */
@@ -12,8 +12,8 @@ static const unsigned assured = 0
 #ifdef __SSE4_1__
     | CPU_SSE41
 #endif
-#ifdef __FMA__
-    | CPU_FMA
+#if defined(__FMA__) && defined(__F16C__)
+    | CPU_FMA_F16C
 #endif
 #ifdef __AVX2__
     | CPU_AVX2
@@ -48,7 +48,7 @@ static unsigned ask_cpu(unsigned wanted)
     if (c & bit_SSE4_1) features |= CPU_SSE41;
     unsigned states = c & bit_OSXSAVE ? saved_states() : 0;
     if (!(c & bit_AVX) || (states & ymm) != ymm) return features;
-    if (c & bit_FMA) features |= CPU_FMA;
+    if (c & bit_FMA && c & bit_F16C) features |= CPU_FMA_F16C;
 
     if (!(wanted & (CPU_AVX2 | CPU_AVX512))) return features;
     __cpuid_count(7, 0, a, b, c, d);

@@ -47,7 +47,7 @@ static const float thresholds[255] = {
 };
 
 /* How many thresholds x reaches; none if x is NaN. Eight halvings: 255 = 2^8 - 1. */
-static uint8_t srgb_byte(float x)
+uint8_t facet_srgb_byte(float x)
 {
     unsigned reached = 0;
     for (unsigned step = 128; step; step >>= 1)
@@ -103,7 +103,7 @@ static __attribute__((noinline)) facet_status encode(const facet_image *image, f
     for (size_t y = 0; y < image->height; y++) {
         uint8_t *pixel = image->pixels + (ptrdiff_t)y * pitch;
         for (size_t i = y * stride; i < y * stride + image->width; i++, pixel += 4) {
-            for (int c = 0; c < 3; c++) pixel[c] = srgb_byte(image->radiance[c][i] * exposure);
+            for (int c = 0; c < 3; c++) pixel[c] = facet_srgb_byte(image->radiance[c][i] * exposure);
             pixel[3] = opacity_byte(image, i);
         }
     }

@@ -125,7 +125,7 @@ typedef enum facet_arch {
     FACET_ARCH_SCALAR,
     FACET_ARCH_SSE2,
     FACET_ARCH_SSE41,
-    FACET_ARCH_AVX2,             /* AVX2 and FMA */
+    FACET_ARCH_AVX2,             /* AVX2, FMA, F16C */
     FACET_ARCH_AVX512,           /* AVX-512 F, VL, DQ, BW */
     FACET_ARCH_NEON              /* aarch64 */
 } facet_arch;
@@ -313,6 +313,39 @@ enum {
     FACET_TWO_SIDED  = 1 << 1    /* a normal that faces away from the eye is turned around; needs view */
 };
 
+/* A pinhole camera: v of pixel (column, row) is -ray/|ray|, ray = corner + column across + row down.
+ *   corner      from the eye to the middle of pixel (0, 0).
+ *   across, down: from a pixel's middle to the next one's to the right, and below.
+ *   x, y        the pixel of the batch's first sample.
+ *   width       pixels in each of the batch's rows: sample i is pixel (x + i % width, y + i/width); 0: all are in one.
+ * Numbers must be finite, columns and rows below 2^20. A ray of 0 counts as a view that is not a number. */
+typedef struct facet_camera {
+    float corner[3], across[3], down[3];
+    uint32_t x, y, width;
+} facet_camera;
+
+/* Streams in fewer bytes, in sample order, each in the place of the floats that it stands for, whatever these pointers
+ * and facet_batch.uniform say. Addresses are multiples of 4. Others may come as floats in the same batch.
+ *   normal            x and y of an octahedral normal as snorm16 (integer/32767, -32768 is -1): normalize(x, y, z) with
+ *                     z = 1 - |x| - |y|, where before, if z < 0, |x| and |y| each lose -z; Cigolle et al. 2014.
+ *   albedo_roughness  R, G, B of albedo, or of base where the material promises it, and perceptual roughness, alpha =
+ *                     roughness^2, as unorm8 (byte/255), linear. Of these what the material promises is taken.
+ *   f0_sigma          R, G, B of f0, and sigma in parts of the largest that the model has, as unorm8. Likewise.
+ *   camera            makes view; NULL: it is a stream.
+ *   half              radiance goes there as IEEE 754 binary16, to nearest, at most 65504; not into `radiance`.
+ *   pixels            and there as facet_encode has it: sRGB R, G, B, and 255. Both may be given; neither accumulates.
+ *   exposure          multiplies the radiance of `pixels`; 0: 1. Finite, >= 0.
+ * Streams of as many bytes a sample may be one another exactly, never a partial overlap. The error bounds hold against
+ * what these formulas give of the packed numbers; rounding to halves or pixels comes on top. */
+typedef struct facet_packed {
+    const int16_t *normal;
+    const uint8_t *albedo_roughness, *f0_sigma;
+    const facet_camera *camera;
+    uint16_t *half[3];
+    uint8_t *pixels;
+    float exposure;
+} facet_packed;
+
 /* n samples as streams. Pointers have a float's alignment, nothing more; streams hold `count` floats, or one where
  * `uniform` says so.
  *   normal         needed.
@@ -332,7 +365,8 @@ enum {
  *                  2001. With FACET_TWO_SIDED, n is the turned normal.
  *   coverage       a bit a sample, least significant first, (count + 7)/8 bytes; NULL: all. Samples not covered are
  *                  neither counted nor written.
- *   radiance       may be one of the inputs, exactly; never a partial overlap.
+ *   radiance       may be one of the inputs, exactly; never a partial overlap. Not needed where `packed` takes it.
+ *   packed         streams in fewer bytes.
  *   invalid        NULL, or raised by the number of covered samples that were not finite or had no normal. Counting
  *                  takes a slower kernel (README, Speed). */
 typedef struct facet_batch {
@@ -348,6 +382,7 @@ typedef struct facet_batch {
     float *radiance[3];
     uint32_t flags;
     size_t *invalid;
+    facet_packed packed;
 } facet_batch;
 
 /* Shades `batch` by `plan`: radiance = sum over lights of f nl E, + albedo/pi ambient + emission.

@@ -142,10 +142,11 @@ OP void prepare(group *g, features x)
 
 /* ---- One light -------------------------------------------------------------------------------------------------- */
 
-/* The end of a stream, with zeros behind it. Rare: out of the way. */
-static __attribute__((noinline, cold)) void pad(const float *from, size_t left, float *padded)
+/* The end of a stream of words, with zeros behind it. Rare: out of the way. */
+static __attribute__((noinline, cold)) void pad(const float *stream, size_t left, float *padded)
 {
-    for (size_t lane = 0; lane < GROUP; lane++) padded[lane] = lane < left ? from[lane] : 0.0f;
+    const bits32 *from = (const bits32 *)stream;
+    for (size_t lane = 0; lane < GROUP; lane++) ((bits32 *)padded)[lane] = lane < left ? from[lane] : 0;
 }
 
 /* A group of a light's own stream, whose end the padding of a batch's tail does not reach. */

@@ -13,6 +13,9 @@
 
 #define INV_PI 0.318309886f
 
+/* 32 bits of anything. */
+typedef uint32_t __attribute__((may_alias)) bits32;
+
 /* FACET_HAS(name): 1 for a row of models.def that this build holds. FACET_BUILT(x): 1 where x is defined as 1. */
 #define FACET_BUILT_COMMA_1 0,
 #define FACET_BUILT_SECOND(a, b, ...) b
@@ -135,6 +138,17 @@ static inline bool index_per_sample(const plan_fields *p)
     return (p->promised | p->derived) & p->needed & (FACET_STREAM_ETA | FACET_STREAM_K);
 }
 
+/* The most pixels that a camera sees along its axes. */
+#define PIXELS ((size_t)1 << 20)
+
+/* What of a batch may come packed. */
+enum {
+    PACKED_ALBEDO_ROUGHNESS = FACET_STREAM_ALBEDO | FACET_STREAM_BASE | FACET_STREAM_ALPHA | FACET_STREAM_ROUGHNESS
+                            | FACET_STREAM_GLOSSINESS,
+    PACKED_F0_SIGMA = FACET_STREAM_F0 | FACET_STREAM_SIGMA,
+    PACKABLE = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | PACKED_ALBEDO_ROUGHNESS | PACKED_F0_SIGMA
+};
+
 #define PLAN_MAGIC (0xface0000u | FACET_VERSION_MAJOR << 8 | FACET_VERSION_MINOR)
 
 /* One call of a kernel. */
@@ -142,10 +156,12 @@ typedef struct job {
     const plan_fields *plan;
     const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else the kernel's */
     size_t mask[COMPONENT_COUNT];        /* sample i stands at i & mask; the kernel's, of batches that are not dense */
-    bool dense;                          /* every stream has a value per sample, none is derived */
+    bool dense;                          /* every stream has a value per sample, none is derived or packed */
     uint32_t streams;                    /* FACET_STREAM_*: are read: from the batch or, if uniform, from the plan */
     uint32_t uniform;                    /* of these, have one value */
     uint32_t given;                      /* of these, come from the batch */
+    uint32_t unpacked;                   /* of these, come packed */
+    const facet_packed *packed;
     size_t count;
     const facet_light *lights;
     size_t light_count;
@@ -155,6 +171,7 @@ typedef struct job {
     bool check_lights;                   /* a light is not directional, has a stream, or an irradiance below 0 */
     const uint8_t *coverage;
     float *radiance[3];
+    bool packs;                          /* radiance goes into packed->half, packed->pixels */
     uint32_t flags;
     size_t *invalid;
 } job;
@@ -195,6 +212,9 @@ static inline bool adopt(void *ours, size_t our_size, const void *theirs, size_t
         if (from[i]) return false;
     return true;
 }
+
+/* A byte of a pixel, which facet_encode makes of radiance times exposure; 0 of NaN. */
+uint8_t facet_srgb_byte(float x);
 
 /* Not isfinite: that is a library call on some compilers. */
 static inline bool finite(float x) { return x - x == 0.0f; }

@@ -86,13 +86,11 @@ static facet_status check_lights(job *j, const facet_batch *b, facet_error *erro
 #define SH_0 0.282094792f
 #define SH_1 0.325735008f
 
-typedef uint32_t __attribute__((may_alias)) bits;
-
 /* By their bits: fewer instructions than floats' comparisons. */
 static bool all_zero(const float *a, int count)
 {
-    bits any = 0;
-    for (int i = 0; i < count; i++) any |= ((const bits *)a)[i];
+    bits32 any = 0;
+    for (int i = 0; i < count; i++) any |= ((const bits32 *)a)[i];
     return any << 1 == 0;
 }
 
@@ -157,6 +155,54 @@ enum {
     0
 };
 
+static facet_status check_camera(const facet_camera *camera, size_t count, facet_error *error)
+{
+    facet_status status = check_vector(camera->corner, "packed.camera.corner", -1, error);
+    if (!status) status = check_vector(camera->across, "packed.camera.across", -1, error);
+    if (!status) status = check_vector(camera->down, "packed.camera.down", -1, error);
+    if (status) return status;
+    const size_t width = camera->width && camera->width < count ? camera->width : count;
+    if (camera->width > PIXELS) return refuse(error, FACET_ERROR_VALUE, "packed.camera.width", -1);
+    if (camera->x > PIXELS || width > PIXELS - camera->x)
+        return refuse(error, FACET_ERROR_VALUE, "packed.camera.x", -1);
+    if (camera->y > PIXELS || (count && (count - 1) / width >= PIXELS - camera->y))
+        return refuse(error, FACET_ERROR_VALUE, "packed.camera.y", -1);
+    return FACET_OK;
+}
+
+static facet_status check_words(const void *packed, const char *field, facet_error *error)
+{
+    return (uintptr_t)packed % sizeof(bits32) ? refuse(error, FACET_ERROR_VALUE, field, -1) : FACET_OK;
+}
+
+static facet_status check_packed(const job *j, facet_error *error)
+{
+    const facet_packed *p = j->packed;
+    const bool halves = p->half[0] || p->half[1] || p->half[2];
+    facet_status status = check_words(p->normal, "packed.normal", error);
+    if (!status) status = check_words(p->albedo_roughness, "packed.albedo_roughness", error);
+    if (!status) status = check_words(p->f0_sigma, "packed.f0_sigma", error);
+    if (!status) status = check_words(p->pixels, "packed.pixels", error);
+    if (!status && p->camera) status = check_camera(p->camera, j->count, error);
+    if (status || !j->packs) return status;
+    for (int c = 0; c < 3 && halves; c++)
+        if (!p->half[c]) return refuse(error, FACET_ERROR_NULL, "packed.half", c);
+    if (!(p->exposure >= 0.0f && finite(p->exposure))) return refuse(error, FACET_ERROR_VALUE, "packed.exposure", -1);
+    if (j->flags & FACET_ACCUMULATE) return refuse(error, FACET_ERROR_ENUM, "flags", -1);
+    return FACET_OK;
+}
+
+/* The streams that come packed. */
+static uint32_t packed_streams(const facet_packed *p, uint32_t promised)
+{
+    uint32_t streams = 0;
+    if (p->normal) streams |= FACET_STREAM_NORMAL;
+    if (p->camera) streams |= FACET_STREAM_VIEW;
+    if (p->albedo_roughness) streams |= promised & PACKED_ALBEDO_ROUGHNESS;
+    if (p->f0_sigma) streams |= promised & PACKED_F0_SIGMA;
+    return streams;
+}
+
 /* Finds the streams that are read, or the plan's numbers in their place; names the first that is not there. What the
  * material promised and nothing reads must be there too. */
 static facet_status gather_streams(job *j, const facet_batch *b, facet_error *error)
@@ -164,16 +210,18 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
     const plan_fields *p = j->plan;
     j->streams |= FACET_STREAM_NORMAL | ((p->needed | p->sources) & ~p->derived);
     if (b->flags & FACET_TWO_SIDED || !none_given(b->view)) j->streams |= FACET_STREAM_VIEW;
+    j->unpacked = packed_streams(j->packed, p->promised);
+    j->streams |= j->unpacked & FACET_STREAM_VIEW;
     const uint32_t taken = j->streams | p->promised, numbers = taken & NUMBERED & ~p->promised;
-    const uint32_t given = taken & ~numbers;
+    const uint32_t given = taken & ~(numbers | j->unpacked);
 #define FACET_STREAM(id, field, components, ...)                                                                      \
     if (given & FACET_STREAM_##id && !take_##components(&j->component[COMPONENT_##id], b->field))                     \
         return refuse(error, FACET_ERROR_NULL, #field, -1);
 #include "streams.def"
     if (numbers) take_numbers(j, numbers);
-    j->uniform = (b->uniform | numbers) & j->streams;
-    j->given = given & j->streams;
-    j->dense = !(j->uniform | p->derived);
+    j->uniform = ((b->uniform & ~j->unpacked) | numbers) & j->streams;
+    j->given = (given | j->unpacked) & j->streams;
+    j->dense = !(j->uniform | j->unpacked | p->derived);
     return FACET_OK;
 }
 
@@ -185,7 +233,8 @@ static facet_status check_batch(job *j, const facet_batch *b, facet_error *error
     facet_status status = check_lights(j, b, error);
     if (!status) status = take_ambient(j, b, error);
     if (!status) status = gather_streams(j, b, error);
-    for (int c = 0; c < 3 && !status; c++)
+    if (!status && (j->unpacked || j->packs)) status = check_packed(j, error);
+    for (int c = 0; c < 3 && !status && !j->packs; c++)
         if (!b->radiance[c]) status = refuse(error, FACET_ERROR_NULL, "radiance", c);
     return status;
 }
@@ -197,14 +246,16 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, const 
     j.plan = p;
     j.streams = 0;
     j.check_lights = false;
+    j.count = b->count;
+    j.flags = b->flags;
+    j.packed = &b->packed;
+    j.packs = b->packed.half[0] || b->packed.half[1] || b->packed.half[2] || b->packed.pixels;
     facet_status status = check_batch(&j, b, error);
     if (status) return status;
 
-    j.count = b->count;
     j.lights = b->lights;
     j.light_count = b->light_count;
     j.coverage = b->coverage;
-    j.flags = b->flags;
     j.invalid = b->invalid;
     j.has_emission = p->emission[0] > 0.0f || p->emission[1] > 0.0f || p->emission[2] > 0.0f;
     for (int c = 0; c < 3; c++) j.radiance[c] = b->radiance[c];

@@ -1,8 +1,9 @@
 /* The batch kernel, once for every architecture and tier: walks a batch group by group, and sees to what is special.
  * Included after arch/NAME.h, with KERNEL defined as the function's name. */
 #include "group.tmpl.h"
+#include "packed.tmpl.h"
 
-/* Samples in a block, where coverage is looked at, or parameters are derived from others, a block at a time. */
+/* Samples in a block, where coverage is looked at, parameters are derived from others, or streams are packed. */
 #define BLOCK (VF_LANES > 1 ? 64 : 16)
 
 _Static_assert(BLOCK % GROUP == 0 && BLOCK % 8 == 0 && BLOCK <= 64, "a bit a sample of a block fits into a uint64_t");
@@ -403,6 +404,83 @@ OP vf3 derived_eta(const job *j, const block *b, size_t at)
     return (vf3){ eta_in(f0.x, o), eta_in(f0.y, o), eta_in(f0.z, o) };
 }
 
+OP void store1(block_values values, int component, size_t at, vf a) { vf_store(values[component] + at, a); }
+
+/* The streams that are packed: `count` of a block's samples from `at` on, the batch's from `sample` on, whose words are
+ * from the i-th on. Stream by stream, so that one vector's arithmetic fills another's latencies. */
+OP void unpack_some(const job *j, const facet_packed *p, size_t i, size_t sample, block_values values, size_t at,
+                    size_t count)
+{
+#define FACET_STREAM(id, field, components, ...)                                                                      \
+    if (PACKABLE & FACET_STREAM_##id && j->unpacked & FACET_STREAM_##id)                                              \
+        for (size_t k = 0; k < count; k += VF_LANES)                                                                  \
+            store##components(values, COMPONENT_##id, at + k,                                                         \
+                              unpacked_##components(FACET_STREAM_##id, j->plan, p, i + k, sample + k));
+#include "streams.def"
+}
+
+/* A block of them, with zeros behind its words. */
+static __attribute__((noinline)) void unpack(const job *j, const block *b, block_values values)
+{
+    const facet_packed *p = j->packed;
+    const size_t whole = b->count - b->count % VF_LANES, left = b->count - whole, i = b->i + whole;
+    unpack_some(j, p, b->i, b->i, values, 0, whole);
+    if (!left) return;
+
+    float words[3][GROUP];
+    facet_packed end;
+    end.normal = (const int16_t *)(const void *)words[0];
+    end.albedo_roughness = (const uint8_t *)words[1];
+    end.f0_sigma = (const uint8_t *)words[2];
+    end.camera = p->camera;
+    if (p->normal) pad((const float *)(const void *)p->normal + i, left, words[0]);
+    if (p->albedo_roughness) pad((const float *)(const void *)p->albedo_roughness + i, left, words[1]);
+    if (p->f0_sigma) pad((const float *)(const void *)p->f0_sigma + i, left, words[2]);
+    unpack_some(j, &end, 0, i, values, whole, VF_LANES);
+}
+
+/* Those samples of a vector at `at` that b covers, of `count`. */
+OP uint32_t covered_lanes(const block *b, size_t at, size_t count)
+{
+    const uint32_t here = LANES(count < VF_LANES ? count : VF_LANES);
+    return b->whole ? here : (uint32_t)(b->covered >> at) & here;
+}
+
+/* Some samples of a vector, as halves and pixels. */
+static __attribute__((noinline)) void pack_some(const job *j, const block *b, size_t at, uint32_t lanes)
+{
+    const facet_packed *p = j->packed;
+    float radiance[3][VF_LANES], words[VF_LANES];
+    uint16_t half[3][VF_LANES];
+    facet_packed some;
+    for (int c = 0; c < 3; c++) {
+        for (size_t lane = 0; lane < VF_LANES; lane++)
+            radiance[c][lane] = lanes >> lane & 1 ? b->radiance[c][at + lane] : 0.0f;
+        some.half[c] = p->half[c] ? half[c] : 0;
+    }
+    some.pixels = p->pixels ? (uint8_t *)words : 0;
+    some.exposure = p->exposure;
+    store_packed(&some, 0, (vf3){ vf_load(radiance[0]), vf_load(radiance[1]), vf_load(radiance[2]) });
+    for (size_t lane = 0, i = b->i + at; lane < VF_LANES; lane++, i++) {
+        if (!(lanes >> lane & 1)) continue;
+        for (int c = 0; c < 3 && p->half[c]; c++) p->half[c][i] = half[c][lane];
+        for (size_t c = 0; c < 4 && p->pixels; c++) p->pixels[4 * i + c] = some.pixels[4 * lane + c];
+    }
+}
+
+/* What was shaded of a block, as halves and pixels. */
+static __attribute__((noinline)) void pack(const job *j, const block *b)
+{
+    for (size_t at = 0; at < b->count; at += VF_LANES) {
+        const uint32_t lanes = covered_lanes(b, at, b->count - at);
+        if (lanes == LANES(VF_LANES)) {
+            float *const *radiance = b->radiance;
+            store_packed(j->packed, b->i + at,
+                         (vf3){ vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) });
+        } else if (lanes) pack_some(j, b, at, lanes);
+    }
+}
+
 /* Parameters that follow from other streams, a block of them. Out of the way of materials that have none. */
 static __attribute__((noinline)) void derive(const job *j, const block *b, block_values values)
 {
@@ -418,14 +496,15 @@ static __attribute__((noinline)) void derive(const job *j, const block *b, block
     }
 }
 
-/* Finds a place for what has not a value per sample: in `values` for what is uniform, the material's numbers too, and
- * for what is derived; zeros for what is not read. */
+/* Finds a place for what has not a float per sample: in `values` for what is uniform, the material's numbers too, and
+ * for what is derived or packed; zeros for what is not read. */
 static __attribute__((noinline)) void place_values(job *j, block_values values)
 {
     static const float zeros[GROUP];
+    const uint32_t made = j->plan->derived | j->unpacked;
     for (int stream = 0; stream < STREAM_COUNT; stream++) {
-        const bool derived = j->plan->derived >> stream & 1, uniform = j->uniform >> stream & 1;
-        const bool given = !uniform && j->streams >> stream & 1;
+        const bool derived = made >> stream & 1, uniform = j->uniform >> stream & 1;
+        const bool given = !uniform && (j->streams & ~j->unpacked) >> stream & 1;
         for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
             j->mask[c] = given ? ~(size_t)0 : derived ? BLOCK - 1 : 0;
             if (given) continue;
@@ -437,10 +516,11 @@ static __attribute__((noinline)) void place_values(job *j, block_values values)
 
 void KERNEL(job *j)
 {
-    const bool derived = j->plan->derived;
-    const size_t step = derived || j->coverage ? BLOCK : j->count;
     const choice chosen = choose_shader(j);
+    const bool derived = j->plan->derived;
+    const size_t step = derived || j->unpacked || j->packs || j->coverage ? BLOCK : j->count;
     block_values values;
+    float radiance[3][BLOCK];
     invalids invalid = { 0, 0 };
     block b;
     if (!j->dense || !chosen.plain) place_values(j, values);
@@ -453,7 +533,8 @@ void KERNEL(job *j)
         b.i = i;
         b.count = j->count - i < step ? j->count - i : step;
         if (!b.whole) b.covered = covered_samples(j, i, b.count);
-        for (int c = 0; c < 3; c++) b.radiance[c] = j->radiance[c] + i;
+        for (int c = 0; c < 3; c++) b.radiance[c] = j->packs ? radiance[c] : j->radiance[c] + i;
+        if (j->unpacked) unpack(j, &b, values);
         if (derived) derive(j, &b, values);
         for (size_t at = 0; at < b.count;) {
             at = chosen.shade(j, &b, at, &invalid);
@@ -461,6 +542,7 @@ void KERNEL(job *j)
             invalid.count += shade_mended(j, &b, at);
             at += GROUP;
         }
+        if (j->packs) pack(j, &b);
     }
     if (j->invalid) *j->invalid += invalid.count;
 }
