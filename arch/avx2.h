@@ -18,6 +18,8 @@ typedef struct { vf m; } vm;
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
 OP void vf_store_half(uint16_t *p, vf a) { _mm_storeu_si128((__m128i_u *)p, _mm256_cvtps_ph(a, 0)); }
+OP void vf_stream(float *p, vf a) { _mm256_stream_ps(p, a); }
+OP void vf_streamed(void) { _mm_sfence(); }
 OP vf vf_splat(float a) { return _mm256_set1_ps(a); }
 
 OP vf vf_sqrt(vf a) { return _mm256_sqrt_ps(a); }

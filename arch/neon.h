@@ -17,6 +17,8 @@ typedef struct { uint32x4_t m; } vm;
 OP vf vf_load(const float *p) { return (vf)*(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = (vf_memory)a; }
 OP void vf_store_half(uint16_t *p, vf a) { vst1_u16(p, vreinterpret_u16_f16(vcvt_f16_f32(a))); }
+OP void vf_stream(float *p, vf a) { vf_store(p, a); }
+OP void vf_streamed(void) { }
 OP vf vf_splat(float a) { return vdupq_n_f32(a); }
 
 /* vminq and vmaxq treat NaN and -0 otherwise than a < b ? a : b does. */

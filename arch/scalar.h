@@ -20,6 +20,12 @@ typedef struct { int m; } vm;
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
+
+/* To an address that is a multiple of a vector's size, past the caches where the ISA can; vf_streamed comes before
+ * another thread may look. */
+OP void vf_stream(float *p, vf a) { vf_store(p, a); }
+OP void vf_streamed(void) { }
+
 OP vf vf_splat(float a) { return a; }
 
 /* IEEE 754 binary16 of 0 <= a <= 65504, to nearest, ties to even; addresses have a uint16_t's alignment. */

@@ -17,6 +17,8 @@ typedef struct { vf m; } vm;
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
+OP void vf_stream(float *p, vf a) { _mm_stream_ps(p, a); }
+OP void vf_streamed(void) { _mm_sfence(); }
 OP vf vf_splat(float a) { return _mm_set1_ps(a); }
 
 /* As scalar.h has it. */

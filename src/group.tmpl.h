@@ -47,7 +47,7 @@ typedef struct {
     const float *const *component;       /* of the streams, and the masks of their indices */
     const size_t *mask;
     size_t at;                           /* the group's first sample in the batch */
-    bool mended;
+    bool mended, streams;                /* streams: radiance goes past the caches */
     vf nv[VECTORS];                      /* as it comes, of any sign */
     terms terms[VECTORS];
     vf is_finite[VECTORS];               /* 0, or NaN where a light's or the destination's value was not finite */
@@ -467,6 +467,12 @@ OP void store(const group *g, features x, bool clamped, float *const *radiance, 
         if (clamped)
             out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
         const size_t i = at + (size_t)k * VF_LANES;
+        if (g->streams) {
+            vf_stream(radiance[0] + i, out.x);
+            vf_stream(radiance[1] + i, out.y);
+            vf_stream(radiance[2] + i, out.z);
+            continue;
+        }
         vf_store(radiance[0] + i, out.x);
         vf_store(radiance[1] + i, out.y);
         vf_store(radiance[2] + i, out.z);

@@ -21,6 +21,7 @@ typedef struct {
     size_t i, count;                     /* its first sample in the batch; its samples */
     uint64_t covered;                    /* a bit a sample, where not the whole block is */
     bool whole, mended;
+    bool streams;                        /* radiance goes past the caches */
 } block;
 
 /* The bits of a vector's three components, together. */
@@ -74,6 +75,7 @@ OP group open_group(const job *j, features x, const block *b, size_t at)
     g.mask = b->mask;
     g.at = b->i + at;
     g.mended = b->mended;
+    g.streams = b->streams;
     EACH(k) {
         g.is_finite[k] = splat(0.0f);
         g.sum[k] = ZERO3;
@@ -317,6 +319,7 @@ static __attribute__((noinline)) size_t shade_mended(const job *j, const block *
     m.i = b->i + at;
     m.count = GROUP;
     m.whole = m.mended = true;
+    m.streams = false;
     for (int c = 0; c < COMPONENT_COUNT; c++) component[c] = values[c];
     m.component = component;
     m.mask = first;
@@ -514,14 +517,41 @@ static __attribute__((noinline)) void place_values(job *j, block_values values)
     }
 }
 
+/* Batches of so many samples do not fit into the caches that a core has to itself, nor does their radiance: it goes past
+ * them, in place of reading it first. 1.28 with AVX-512 from memory. */
+#define STREAMED ((size_t)1 << 19)
+
+/* How many samples are left to the next multiple of a vector's size in all three of a large batch's radiance streams;
+ * as many as there are where it is small, or they are never aligned together. */
+OP size_t samples_to_alignment(const job *j)
+{
+    const uintptr_t size = sizeof(vf), first = (uintptr_t)j->radiance[0] % size;
+    const bool together = (uintptr_t)j->radiance[1] % size == first && (uintptr_t)j->radiance[2] % size == first;
+    if (j->count < STREAMED || !together || first % sizeof(float)) return j->count;
+    return (size - first) % size / sizeof(float);
+}
+
+/* Shades a block, its floats in place. Returns how many covered samples were invalid. */
+OP size_t shade_whole_block(const job *j, const block *b, block_shader *shade)
+{
+    invalids invalid = { 0, 0 };
+    for (size_t at = 0; at < b->count;) {
+        at = shade(j, b, at, &invalid);
+        if (at >= b->count) break;
+        invalid.count += shade_mended(j, b, at);
+        at += GROUP;
+    }
+    return invalid.count;
+}
+
 void KERNEL(job *j)
 {
+    const bool derived = j->plan->derived, in_blocks = derived || j->unpacked || j->packs || j->coverage;
     const choice chosen = choose_shader(j);
-    const bool derived = j->plan->derived;
-    const size_t step = derived || j->unpacked || j->packs || j->coverage ? BLOCK : j->count;
+    const size_t aligned = in_blocks ? j->count : samples_to_alignment(j);
+    size_t invalid = 0, next;
     block_values values;
     float radiance[3][BLOCK];
-    invalids invalid = { 0, 0 };
     block b;
     if (!j->dense || !chosen.plain) place_values(j, values);
     b.component = j->component;
@@ -529,20 +559,18 @@ void KERNEL(job *j)
     b.whole = !j->coverage;
     b.mended = false;
 
-    for (size_t i = 0; i < j->count; i += step) {
+    for (size_t i = 0; i < j->count; i = next) {
+        next = in_blocks && j->count - i > BLOCK ? i + BLOCK : i < aligned ? aligned : j->count;
         b.i = i;
-        b.count = j->count - i < step ? j->count - i : step;
+        b.count = next - i;
+        b.streams = i >= aligned;
         if (!b.whole) b.covered = covered_samples(j, i, b.count);
         for (int c = 0; c < 3; c++) b.radiance[c] = j->packs ? radiance[c] : j->radiance[c] + i;
         if (j->unpacked) unpack(j, &b, values);
         if (derived) derive(j, &b, values);
-        for (size_t at = 0; at < b.count;) {
-            at = chosen.shade(j, &b, at, &invalid);
-            if (at >= b.count) break;
-            invalid.count += shade_mended(j, &b, at);
-            at += GROUP;
-        }
+        invalid += shade_whole_block(j, &b, chosen.shade);
         if (j->packs) pack(j, &b);
     }
-    if (j->invalid) *j->invalid += invalid.count;
+    if (aligned < j->count) vf_streamed();
+    if (j->invalid) *j->invalid += invalid;
 }
