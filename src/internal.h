@@ -81,6 +81,12 @@ enum {
     FRESNEL_fitted_conductor = FACET_FRESNEL_CONDUCTOR, FRESNEL_READS_fitted_conductor = 0
 };
 
+enum {
+    SPECIAL_NONE,
+#define FACET_SPECIAL(name, ...) SPECIAL_##name,
+#include "special.def"
+};
+
 /* Architectures with FACET_ARCH_BEST, and tiers. */
 enum {
     ARCH_COUNT = 1
@@ -117,6 +123,7 @@ typedef struct __attribute__((may_alias)) plan_fields {
             uint8_t coupled, clamped_alpha, number_from;   /* *_FROM_* */
             uint8_t fresnel_properties;
             uint8_t fits;                /* 0: the exact term is evaluated; 1: the three of `fit` are equal; 3 */
+            uint8_t special;             /* SPECIAL_NAME: the row of special.def */
         };
     };
     uint32_t promised;                   /* FACET_STREAM_*: by the material */

@@ -338,6 +338,17 @@ static void fit_fresnel(plan_fields *p)
     p->fit_error = worst;
 }
 
+/* The row of special.def that the models are. */
+static uint8_t find_special(const plan_fields *p)
+{
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any)                                \
+    if (p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                           \
+        && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
+        && p->fits == FITS_##fresnel_ && p->coupled == coupled_) return SPECIAL_##name;
+#include "special.def"
+    return SPECIAL_NONE;
+}
+
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
 static __attribute__((noinline)) facet_status compile(facet_plan *out, const facet_material *m, facet_target target,
                                                       facet_error *error)
@@ -365,6 +376,7 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
         p->eta_outside = 0.0f;
     forget_numbers(p);
     fit_fresnel(p);
+    p->special = find_special(p);
     p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
     store3(p->emission, not_negative3(splat3(m->emission)));
     p->sum = plan_sum(p);

@@ -215,6 +215,11 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
     }
 #include "special.def"
 
+/* Whether this build and tier have a row of special.def: a constant. */
+#define SPECIAL_BUILT(diffuse_, distribution_, masking, fresnel_)                                                     \
+    (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                     \
+     && !(FACET_STRICT && FITS_##fresnel_ != FITS_none))
+
 /* What shades a batch, and whether it is a plain one. */
 typedef struct { block_shader *shade; bool plain; } choice;
 
@@ -227,14 +232,14 @@ OP choice choose_shader(const job *j)
                               && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
     const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !j->has_emission;
     if (!(j->streams & FACET_STREAM_VIEW)) return (choice){ shade_any, false };
+    switch (p->special) {
 #define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
-    if (FACET_HAS(diffuse_) && FACET_HAS(distribution_) && FACET_HAS(masking) && FACET_HAS(fresnel_)                  \
-        && p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                        \
-        && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
-        && (FACET_STRICT ? FITS_##fresnel_ == FITS_none : p->fits == FITS_##fresnel_) && p->coupled == coupled_)      \
+    case SPECIAL_##name:                                                                                              \
+        if (!(SPECIAL_BUILT(diffuse_, distribution_, masking, fresnel_))) break;                                      \
         return (choice){ plain ? plain_##name : plain_lights ? lights_##name : (any_) ? shade_##name : shade_any,     \
                          plain };
 #include "special.def"
+    }
     return (choice){ shade_any, false };
 }
 
