@@ -29,7 +29,7 @@ static contender *add(contenders *c, const work *w, int size, layout where)
     c->all = grown;
     contender *one = &c->all[c->count];
     *one = (contender){ .work = w, .size = size, .layout = where, .parts = 1 };
-    if (!streams_batch(size, where, w->streams, &one->batch)) return NULL;
+    if (!streams_batch(size, where, w->streams, w->format, &one->batch)) return NULL;
     one->batch.lights = w->lights;
     one->batch.light_count = w->light_count;
     c->count++;
@@ -76,14 +76,25 @@ static bool add_baselines(contenders *c, const work *w, int size, layout where)
     return true;
 }
 
+/* It has that in its name, or what is compared with it has. */
+static bool passes(const work *w, const char *filter)
+{
+    if (strstr(w->name, filter)) return true;
+    for (int i = 0; work_at(i); i++) {
+        const work *other = work_at(i);
+        if (other->beside && !strcmp(other->beside, w->name) && strstr(other->name, filter)) return true;
+    }
+    return false;
+}
+
 /* A frame is what tile is in memory. */
 static bool is_wanted(const work *w, int size, const bench_options *o)
 {
     const bool in_memory = size == SIZE_MEMORY, is_tile = w->shade == SHADE_TILE;
-    if (is_tile && work_is_frame(w) != in_memory) return false;
-    if (o->filter && !strstr(w->name, o->filter)) return false;
+    if ((is_tile || w->frame) && w->frame != in_memory) return false;
+    if (o->filter && !passes(w, o->filter)) return false;
     if (!w->title && !o->all && !o->filter) return false;
-    return o->sizes & 1u << size || (!o->sizes && in_memory == work_is_frame(w));
+    return o->sizes & 1u << size || (!o->sizes && in_memory == w->frame);
 }
 
 bool contenders_list(contenders *c, const bench_options *o)
@@ -98,8 +109,8 @@ bool contenders_list(contenders *c, const bench_options *o)
                 if (c->count > before && !add_baselines(c, work_at(i), size, (layout)where)) return false;
             }
     if (!c->count && o->filter)
-        return console_error("--filter '%.80s': no workload or kernel of that name at that size; tile of 4M is frame",
-                             o->filter);
+        return console_error("--filter '%.80s': no workload or kernel of that name at that size; of 4M tile is frame, "
+                             "packed and packed-pixels", o->filter);
     return c->count || console_error("nothing to time at that size");
 }
 

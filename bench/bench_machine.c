@@ -197,10 +197,11 @@ static void raise(double *most, bound_by *by, double seconds, bound_by what)
 
 double machine_bound(const work *w, facet_arch arch, int size, bound_by *by)
 {
-    const int table = table_of(arch), loads = work_loads(w), stores = WORK_STORES;
+    const int table = table_of(arch);
+    const double bytes = work_reads(w) + work_writes(w);
+    const double loads = work_reads(w) / (double)sizeof(float), stores = work_writes(w) / (double)sizeof(float);
     if (table < 0 || !w->operations.multiply) return NAN;
     const peak *p = peaks[table], *copy = size == SIZE_MEMORY ? &copy_memory : &copy_l2;
-    const double bytes = sizeof(float) * (double)(loads + stores);
     double most = arithmetic(&w->operations, tables[table], p, by);
     raise(&most, by, loads / p[PEAK_LOAD].now, BY_LOAD);
     raise(&most, by, stores / p[PEAK_STORE].now, BY_STORE);

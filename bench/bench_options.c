@@ -45,12 +45,13 @@ static bool read_fresh(void *to, const char *text)
 #define FIELD(name) .offset = offsetof(bench_options, name)
 
 static const setting table[] = {
-    { "--filter", "TEXT", "only what has TEXT in its name, kernels of the table too", read_text, FIELD(filter) },
+    { "--filter", "TEXT", "only what has TEXT in its name, kernels of the table too, and what that is compared with",
+      read_text, FIELD(filter) },
     { "--all", NULL, "every kernel of the table (models x tier x arch), not the workloads alone", read_switch,
       FIELD(all) },
     { "--arch", "WORD", "of the library this architecture alone", read_word, FIELD(arch), .kind = FACET_KIND_ARCH },
     { "--size", "LIST", "samples a call, of 16, 256 (L1), 4096 (L2) and 4M (memory), with commas\n"
-      "(16,256,4096 and, of the frame, 4M)", .read = read_sizes },
+      "(16,256,4096 and, of frame and packed, 4M)", .read = read_sizes },
     { "--seconds", "N", "how long it may take, but for a few rounds (60)", read_number, FIELD(seconds),
       .limits = { 0, 86400 } },
     { "--tsv", "FILE", "write all of it as a table", read_text, FIELD(tsv) },
@@ -89,18 +90,20 @@ void bench_options_help(void)
     command_line_help(&group, 1);
     printf("\nWorkloads\n");
     for (int i = 0; work_at(i); i++)
-        if (work_at(i)->title) printf("  %-10s %s\n", work_at(i)->name, work_at(i)->title);
+        if (work_at(i)->title) printf("  %-13s %s\n", work_at(i)->name, work_at(i)->title);
     printf("\nBaselines\n"
            "  literal    the textbook's shader, step by step: acosf, tanf, powf, normalize; -O2\n"
            "  gcc-256 .. branch-free C over arrays, for that compiler's vectoriser at that many bits: -O3\n"
            "  clang-512  -ffast-math -march=native; x 256 and x 512 compare with whichever compiler's is faster\n"
            "  ispc       the same in ISPC, of tile, where there was an ispc\n"
+           "  x frame    of packed and packed-pixels, which no baseline has: how many times as fast as frame, by the\n"
+           "             same architecture and tier\n"
            "\n"
            "Bounds\n"
            "  The time that a workload's operations take at the peaks that this run measures, each with a loop that\n"
            "  does one thing on the vectors of that architecture. bench/bench_work.c counts the operations of a\n"
            "  sample, by hand, of the cheapest formula that we know: multiplications (with an addition one, where\n"
-           "  the machine has that), additions, divisions, square roots, and the floats loaded and stored. All units\n"
+           "  the machine has that), additions, divisions, square roots, and the bytes loaded and stored. All units\n"
            "  work side by side, so the slowest counts. Where that is the divider, the multipliers take over as much\n"
            "  of its work as lets both end together: %d multiplications for a quotient (a common denominator), %d for\n"
            "  a root (an estimate and a Newton step). What does not stay in L1 is bound by the copy in the memory\n"

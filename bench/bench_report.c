@@ -72,14 +72,15 @@ static void print_who(const result *r)
     printf("  %-9s %-6s", r->arch, other ? "" : r->tier);
 }
 
-static void print_row(const result *r)
+static void print_row(const result *r, const work *w)
 {
     print_who(r);
     cell(9, 3, r->ns, "");
     cell(7, 1, 100 * r->spread, " %");
     cell(8, 2, r->cycles, "");
     cell(8, 1, 1e3 / r->ns, "");
-    for (int i = 0; i < FASTER; i++) times(r->faster[i]);
+    if (w->beside) times(r->faster_beside);
+    for (int i = 0; i < FASTER && !w->beside; i++) times(r->faster[i]);
     cell(6, 0, 100 * r->fraction, " %");
     printf(" %-6s", r->bound_by);
     scientific(8, r->error);
@@ -87,7 +88,7 @@ static void print_row(const result *r)
     printf("\n");
 }
 
-/* What a column compares with: "x 512" and the baseline of that width. */
+/* What a column compares with: "x frame", or "x 512" and the baseline of that width. */
 static void label(char *text, size_t size, int column, const contender *rival)
 {
     static const int bits[FASTER] = { [FASTER_256] = 256, [FASTER_512] = 512 };
@@ -98,8 +99,10 @@ static void label(char *text, size_t size, int column, const contender *rival)
 static void print_heading(const contender *first, int count)
 {
     char text[16];
+    const char *beside = first->work->beside;
     printf("%18s %9s %7s %8s %8s", "", "ns/sample", "+-", "cycles", "M/s");
-    for (int i = 0; i < FASTER; i++) {
+    if (beside) printf("   x %5s", beside);
+    for (int i = 0; i < FASTER && !beside; i++) {
         label(text, sizeof text, i, results_rival(first, count, i));
         printf(" %9s", text);
     }
@@ -122,7 +125,7 @@ static void print_group(const contender *first, const result *rows, int count)
     printf("\n%s%s%s\n%s samples a call, %s, %g bytes a sample, %d rounds\n", w->name, w->title ? ": " : "",
            w->title ? w->title : "", size_word(rows->size), rows->layout, rows->bytes, first->ns.count);
     print_heading(first, count);
-    for (int i = 0; i < count; i++) print_row(&rows[i]);
+    for (int i = 0; i < count; i++) print_row(&rows[i], w);
     print_rivals(first, count);
 }
 

@@ -57,15 +57,25 @@ static const char *arch_of(const contender *c)
     return c->baseline ? c->baseline->name : facet_word(FACET_KIND_ARCH, (int)c->target.arch);
 }
 
-static void fill_row(result *r, const contender *c, const contender *const rivals[FASTER])
+/* The same target on the workload that it is compared with, or NULL. */
+static const contender *beside(const contenders *all, const contender *c)
+{
+    for (const contender *other = all->all; c->work->beside && other < all->all + all->count; other++)
+        if (!strcmp(other->work->name, c->work->beside) && other->size == c->size && other->layout == c->layout
+            && !other->baseline && other->target.arch == c->target.arch && other->target.tier == c->target.tier)
+            return other;
+    return NULL;
+}
+
+static void fill_row(result *r, const contender *c, const contender *const rivals[FASTER], const contender *other)
 {
     const facet_arch arch = c->baseline ? machine_arch(c->baseline->bits) : c->target.arch;
     const found_error e = errors_of(c->work, c->baseline ? c->baseline->name : tier_of(c));
     bound_by by;
     *r = (result){ .size = sizes[c->size], .ns = series_median(&c->ns), .spread = series_spread(&c->ns),
                    .cycles = series_median(&c->cycles), .fraction = series_median(&c->fraction),
-                   .bytes = (double)sizeof(float) * (work_loads(c->work) + WORK_STORES), .error = e.worst,
-                   .p999 = e.p999 };
+                   .bytes = work_reads(c->work) + work_writes(c->work), .error = e.worst, .p999 = e.p999,
+                   .faster_beside = other ? series_ratio(&other->ns, &c->ns) : NAN };
     snprintf(r->name, sizeof r->name, "%s", c->work->name);
     snprintf(r->tier, sizeof r->tier, "%s", tier_of(c));
     snprintf(r->arch, sizeof r->arch, "%s", arch_of(c));
@@ -83,7 +93,8 @@ results results_of(const contenders *c)
         count = contenders_group(c, i);
         for (int column = 0; column < FASTER; column++)
             rivals[column] = results_rival(&c->all[i], count, column);
-        for (int k = 0; k < count; k++) fill_row(add_row(&r), &c->all[i + k], rivals);
+        for (const contender *one = &c->all[i]; one < &c->all[i + count]; one++)
+            fill_row(add_row(&r), one, rivals, beside(c, one));
     }
     return r;
 }

@@ -13,6 +13,7 @@ typedef struct {
     size_t size;
     double ns, spread, cycles, bytes;    /* of a sample */
     double faster[FASTER];               /* times as fast as that baseline */
+    double faster_beside;                /* as the workload beside it; not in tables */
     double fraction, error, p999;
 } result;
 

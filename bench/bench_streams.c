@@ -10,14 +10,21 @@ const char *const size_words[SIZES] = { "16", "256", "4096", "4M" };
 
 enum { PAGE = 4096, STAGGER = 256, PATTERN = 4096 };
 
-/* Components in the order of streams.def, then radiance. */
+/* Components in the order of streams.def, then radiance, then packed words: of normals, colours and roughness, f0 and
+ * sigma. */
 enum {
 #define FACET_STREAM(id, field, components, ...) AT_##id, AT_##id##_LAST = AT_##id + components - 1,
 #include "streams.def"
-    AT_RADIANCE, COMPONENTS = AT_RADIANCE + 3
+    AT_RADIANCE, AT_NORMAL_PACKED = AT_RADIANCE + 3, AT_ALBEDO_ROUGHNESS, AT_F0_SIGMA,
+    COMPONENTS = AT_NORMAL_PACKED + STREAMS_PACKED
 };
 
 static float *buffers[SIZES][LAYOUTS][COMPONENTS];
+
+/* Rays within 45 degrees of -z. */
+static const facet_camera camera = {
+    .corner = { -0.7f, 0.7f, -1.0f }, .across = { 1.4f / 2048, 0, 0 }, .down = { 0, -1.4f / 2048, 0 }, .width = 2048,
+};
 
 /* ---- What is in them --------------------------------------------------------------------------------------------- */
 
@@ -51,10 +58,29 @@ static void fill_tangent(int i)
     put(AT_TANGENT, i, z / length, 0, -x / length);
 }
 
+/* Above the plane z = 0 nothing is folded. */
+static void pack_normal(int i)
+{
+    double n[3], sum = 0;
+    int16_t word[2];
+    for (int c = 0; c < 3; c++) sum += fabs(n[c] = pattern[AT_NORMAL + c][i]);
+    for (int c = 0; c < 2; c++) word[c] = (int16_t)lrint(32767 * n[c] / sum);
+    memcpy(&pattern[AT_NORMAL_PACKED][i], word, sizeof word);
+}
+
+/* Three components and a number, all in [0, 1]. */
+static void pack_bytes(int at, int i, int colour, double fourth)
+{
+    uint8_t byte[4] = { [3] = (uint8_t)lrint(255 * fourth) };
+    for (int c = 0; c < 3; c++) byte[c] = (uint8_t)lrintf(255 * pattern[colour + c][i]);
+    memcpy(&pattern[at][i], byte, sizeof byte);
+}
+
 static void fill_pattern(void)
 {
+    const double sigma_max = 1.5707963267948966;
     for (int i = 0; i < PATTERN; i++) {
-        for (int at = 0; at < COMPONENTS; at++) pattern[at][i] = between(0.02, 0.98);
+        for (int at = 0; at < AT_NORMAL_PACKED; at++) pattern[at][i] = between(0.02, 0.98);
         fill_direction(AT_NORMAL, i);
         fill_direction(AT_VIEW, i);
         fill_tangent(i);
@@ -63,6 +89,9 @@ static void fill_pattern(void)
             pattern[AT_ETA + c][i] = between(0.2, 3);
             pattern[AT_K + c][i] = between(0, 4);
         }
+        pack_normal(i);
+        pack_bytes(AT_ALBEDO_ROUGHNESS, i, AT_ALBEDO, sqrt(pattern[AT_ALPHA][i]));
+        pack_bytes(AT_F0_SIGMA, i, AT_F0, pattern[AT_SIGMA][i] / sigma_max);
     }
 }
 
@@ -97,12 +126,24 @@ static bool make_room(int size, layout where, const bool wanted[COMPONENTS])
     return true;
 }
 
-bool streams_batch(int size, layout where, uint32_t streams, facet_batch *batch)
+/* Radiance has its place, in whatever format. */
+static facet_packed packed_streams(float *const *at, stream_format format)
+{
+    facet_packed p = { .normal = (const int16_t *)(void *)at[AT_NORMAL_PACKED], .camera = &camera,
+                       .albedo_roughness = (const uint8_t *)at[AT_ALBEDO_ROUGHNESS],
+                       .f0_sigma = (const uint8_t *)at[AT_F0_SIGMA] };
+    if (format == PIXELS) p.pixels = (uint8_t *)at[AT_RADIANCE];
+    for (int c = 0; c < 3 && format == HALVES; c++) p.half[c] = (uint16_t *)(void *)at[AT_RADIANCE + c];
+    return p;
+}
+
+bool streams_batch(int size, layout where, uint32_t streams, stream_format format, facet_batch *batch)
 {
     bool wanted[COMPONENTS] = { [AT_RADIANCE] = true, true, true };
 #define FACET_STREAM(id, field, components, ...)                                                                      \
     for (int c = 0; c < components; c++) wanted[AT_##id + c] = streams & FACET_STREAM_##id;
 #include "streams.def"
+    for (int i = 0; i < STREAMS_PACKED; i++) wanted[AT_NORMAL_PACKED + i] = format != FLOATS;
     /* Small buffers have all from the start, so that they stand in one order for everybody. */
     if (size != SIZE_MEMORY) memset(wanted, 1, sizeof wanted);
     if (!make_room(size, where, wanted)) return false;
@@ -114,6 +155,7 @@ bool streams_batch(int size, layout where, uint32_t streams, facet_batch *batch)
     for (int c = 0; c < components; c++)                                                                              \
         if (streams & FACET_STREAM_##id) ((const float **)&batch->field)[c] = at[AT_##id + c];
 #include "streams.def"
+    if (format != FLOATS) batch->packed = packed_streams(at, format);
     return true;
 }
 

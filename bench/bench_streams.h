@@ -13,12 +13,18 @@ enum { SIZE_TINY, SIZE_L1, SIZE_L2, SIZE_MEMORY, SIZES };
 extern const size_t sizes[SIZES];
 extern const char *const size_words[SIZES];
 
-/* A batch of that many samples with these streams (FACET_STREAM_*) and radiance; the others are NULL, and so are
- * lights. Buffers are made when they are first asked for; what is in them is the same in every layout. False where
- * memory ends. */
-bool streams_batch(int size, layout where, uint32_t streams, facet_batch *batch);
+/* What streams hold: floats; or normals, colours and numbers as facet_packed has them, so many words a sample, and
+ * radiance halves or pixels. */
+typedef enum { FLOATS, HALVES, PIXELS } stream_format;
+enum { STREAMS_PACKED = 3 };
 
-/* The same batch so many samples on. */
+/* A batch of that many samples with these streams of floats (FACET_STREAM_*), the packed ones and a camera where the
+ * format says so, and radiance; the others are NULL, and so are lights. Buffers are made when they are first asked for;
+ * what is in them is the same in every layout, and packed what it is as floats, but for the view. False where memory
+ * ends. */
+bool streams_batch(int size, layout where, uint32_t streams, stream_format format, facet_batch *batch);
+
+/* The same batch, of floats, so many samples on. */
 void streams_move(facet_batch *batch, size_t samples);
 
 #endif

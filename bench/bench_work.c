@@ -12,15 +12,16 @@ static const facet_light directional[SHADE_MOST_LIGHTS] = {
 
 #define DIFFUSE FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA
 #define VECTORS FACET_STREAM_NORMAL | FACET_STREAM_VIEW
-#define TILE                                                                                                          \
-    .kernel = "oren-nayar+ggx/smith-correlated/schlick/uncoupled",                                                    \
+#define TILE_MATERIAL                                                                                                 \
     .material = { .diffuse = { .model = FACET_DIFFUSE_OREN_NAYAR }, .specular = { .model = FACET_DISTRIBUTION_GGX },  \
-                  .streams = DIFFUSE | FACET_STREAM_ALPHA | FACET_STREAM_F0 },                                        \
+                  .streams = DIFFUSE | FACET_STREAM_ALPHA | FACET_STREAM_F0 }
+#define TILE                                                                                                          \
+    .kernel = "oren-nayar+ggx/smith-correlated/schlick/uncoupled", TILE_MATERIAL,                                     \
     .streams = VECTORS | DIFFUSE | FACET_STREAM_ALPHA | FACET_STREAM_F0
 
 /* Operations are counted by hand, of the cheapest branch-free way to float's precision that we know: what a sample has
- * once + what it has for each light. Neither clamps nor checks count. Multiplications, those with an addition,
- * additions, divisions, square roots:
+ * once + what it has for each light. Neither clamps nor checks count, nor do shifts; from and to integers and halves
+ * counts as an addition. Multiplications, those with an addition, additions, divisions, square roots:
  *     n.v, n.l, v.l                  1 2 0 0 0 each
  *     A and B of sigma               2 1 2 2 0
  *     A + B max(0, s0)/max(nl, nv)   0 2 2 1 0
@@ -34,7 +35,12 @@ static const facet_light directional[SHADE_MOST_LIGHTS] = {
  *     1994's A, B, C of sigma        3 1 3 3 0
  *     its sines and angles           2 16 2 0 4    arccosines: a polynomial of degree 7
  *     the rest of it                21 6 13 3 0    the radiance too
- *     radiance                       7 3 0 0 0     diffuse alone: 7 0, specular alone: 6 0; coupled: 7 3 1 */
+ *     radiance                       7 3 0 0 0     diffuse alone: 7 0, specular alone: 6 0; coupled: 7 3 1
+ *     an octahedral normal           4 2 6 1 1     folded, and its length
+ *     a camera's view                4 5 1 1 1     of a row of pixels: corner + y down is known
+ *     eight unorm8                   9 0 8 0 0     alpha is the square of one
+ *     three halves                   0 0 3 0 0
+ *     three bytes of sRGB            3 21 3 3 3    of the root, a rational function, 4/3; the line */
 static const work workloads[] = {
     { "tile", "Oren-Nayar (A, B) + GGX + correlated Smith + Schlick, everything per sample", TILE,
       .lights = directional, .light_count = 1, .shade = SHADE_TILE,
@@ -66,8 +72,14 @@ static const work workloads[] = {
       .streams = VECTORS | DIFFUSE, .lights = directional, .light_count = 1, .shade = SHADE_FULL,
       .operations = { 4 + 25, 3 + 26, 3 + 15, 3 + 3, 0 + 4 } },
     { "frame", "tile of four million samples from memory", TILE,
-      .lights = directional, .light_count = 1, .shade = SHADE_TILE,
+      .frame = true, .lights = directional, .light_count = 1, .shade = SHADE_TILE,
       .operations = { 5 + 24, 4 + 23, 3 + 7, 2 + 3, 1 + 2 } },
+    { "packed", "frame, of packed streams and a camera, into halves", TILE_MATERIAL,
+      .format = HALVES, .frame = true, .lights = directional, .light_count = 1, .shade = -1, .beside = "frame",
+      .operations = { 5 + 24 + 17, 4 + 23 + 7, 3 + 7 + 15 + 3, 2 + 3 + 2, 1 + 2 + 2 } },
+    { "packed-pixels", "the same into sRGB pixels", TILE_MATERIAL,
+      .format = PIXELS, .frame = true, .lights = directional, .light_count = 1, .shade = -1, .beside = "frame",
+      .operations = { 5 + 24 + 17 + 3, 4 + 23 + 7 + 21, 3 + 7 + 15 + 3, 2 + 3 + 2 + 3, 1 + 2 + 2 + 3 } },
 };
 
 enum { WORKLOADS = sizeof workloads / sizeof workloads[0], MOST_KERNELS = 128 };
@@ -109,12 +121,16 @@ const work *work_at(int index)
     return index < WORKLOADS ? &workloads[index] : &kernels[index - WORKLOADS];
 }
 
-int work_loads(const work *w)
+int work_reads(const work *w)
 {
-    int count = 0;
+    int count = w->format == FLOATS ? 0 : STREAMS_PACKED;
 #define FACET_STREAM(id, field, components, ...) if (w->streams & FACET_STREAM_##id) count += components;
 #include "streams.def"
-    return count;
+    return count * (int)sizeof(float);
 }
 
-bool work_is_frame(const work *w) { return !strcmp(w->name, "frame"); }
+int work_writes(const work *w)
+{
+    static const int bytes[] = { [FLOATS] = 3 * sizeof(float), [HALVES] = 3 * sizeof(uint16_t), [PIXELS] = 4 };
+    return bytes[w->format];
+}

@@ -3,6 +3,7 @@
 #define BENCH_WORK_H
 
 #include "baseline.h"
+#include "bench_streams.h"
 
 /* Operations of a sample: multiplications alone and with an addition, additions alone, divisions, square roots. */
 typedef struct {
@@ -15,8 +16,11 @@ typedef struct work {
     facet_material material;
     const facet_light *lights;
     size_t light_count;
-    uint32_t streams;            /* FACET_STREAM_*: what comes per sample */
+    uint32_t streams;            /* FACET_STREAM_*: what comes per sample, in floats */
+    stream_format format;        /* or comes packed, and how radiance goes */
+    bool frame;                  /* of SIZE_MEMORY alone, where it is tile */
     int shade;                   /* SHADE_* of the baselines, or -1 */
+    const char *beside;          /* what it is compared with instead of baselines: a workload, on the same target */
     operations operations;       /* of a workload */
 } work;
 
@@ -24,11 +28,8 @@ typedef struct work {
 int work_count(void);
 const work *work_at(int index);
 
-/* Floats that a sample reads and writes. */
-int work_loads(const work *w);
-enum { WORK_STORES = 3 };
-
-/* Workloads that share their formula with another: tile of samples that come from memory. */
-bool work_is_frame(const work *w);
+/* Bytes that a sample reads and writes. */
+int work_reads(const work *w);
+int work_writes(const work *w);
 
 #endif

@@ -251,6 +251,6 @@ int main(int count, char **words)
            "# stay within, half of them uniform, half in the lobe.\n"
            "# baseline\tworkload\tname\tworst\tp99.9\n# kernel\tworkload\ttier\tworst\tp99.9\n", SAMPLES);
     for (int i = 0; work_at(i); i++)
-        if (work_at(i)->title && !work_is_frame(work_at(i))) measure_all(work_at(i));
+        if (work_at(i)->title && !work_at(i)->frame) measure_all(work_at(i));
     return ferror(stdout) || fflush(stdout) ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -19,7 +19,7 @@ helps() {
     bench --help >"$work/help" 2>"$work/err"
     none "on stderr" "$(cat "$work/err")"
     for word in --filter --all --arch --size --seconds --tsv --compare --errors tile diffuse metal plastic lights full \
-        frame literal Bounds Errors; do
+        frame packed-pixels literal Bounds Errors 'x frame'; do
         grep -q -- "$word" "$work/help" || { echo "lacks $word"; return 1; }
     done
 }
@@ -111,6 +111,22 @@ frame() {
     grep -q '^peak	copy_memory	' "$work/frame.tsv"
 }
 
+# Packed streams have no baselines: a row for each tier and layout, and a ratio to frame's, which comes along.
+packed() {
+    run "$work/packed.tsv" --filter packed --arch best
+    none "malformed" "$(bad_rows "$work/packed.tsv")"
+    awk -F '\t' '$2 ~ /^packed/ { print $2, $3, $5, $10, $11 }' "$work/packed.tsv" | sort | uniq -c |
+        sed 's/^ *//' >"$work/rows"
+    for row in 'packed fast 4194304 18' 'packed strict 4194304 18' 'packed-pixels fast 4194304 16' \
+        'packed-pixels strict 4194304 16'; do
+        echo "2 $row -"
+    done | diff "$work/rows" -
+    [ "$(awk -F '\t' '$2 == "frame" && $3 == "fast"' "$work/packed.tsv" | wc -l)" = 2 ]
+    [ "$(grep -c ' x frame ' "$work/out")" = 2 ]
+    awk '/^[a-z-]*:/ { beside = /^packed/ } beside && /fast|strict/ && NF > 9 && $8 > 0' "$work/out" >"$work/ratios"
+    [ "$(wc -l <"$work/ratios")" = 4 ]
+}
+
 kernels() {
     run "$work/kernels.tsv" --all --size 16 --arch scalar
     none "malformed" "$(bad_rows "$work/kernels.tsv")"
@@ -155,6 +171,7 @@ without_errors() {
 
 check "every workload, by every baseline and the library" workloads
 check "a frame from memory" frame
+check "packed streams beside a frame" packed
 check "every kernel of the table" kernels
 check "the baselines compute the same functions" baselines_agree
 check "a table is like itself" same
