@@ -245,7 +245,8 @@ bool is_baseline(const kernel_row *r)
 
 bool is_workload(const machine *m, const char *kernel)
 {
-    static const char *const words[] = { "tile", "diffuse", "metal", "plastic", "lights", "full", "frame" };
+    static const char *const words[] = { "tile", "diffuse", "metal", "plastic", "lights", "full", "frame", "packed",
+                                         "packed-pixels" };
     for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
         if (!strcmp(kernel, words[i]))
             return true;

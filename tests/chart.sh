@@ -33,7 +33,7 @@ made_up() {
     done
     slowness=1
     for kernel in tile frame lambert oren-nayar oren-nayar-full ggx/smith-correlated/schlick \
-        ggx/smith-correlated/schlick-f82 ggx/smith-correlated/conductor; do
+        ggx/smith-correlated/schlick-f82 ggx/smith-correlated/conductor packed; do
         slowness=$((slowness + 1))
         for tier in fast strict; do
             row $kernel $tier scalar $((20 * slowness * $3)) - 2e-4 1e-5
@@ -79,7 +79,7 @@ marked() {
 marks_all() {
     marked rounding '^tile '
     marked kernels ' (fast|strict) '
-    marked arches '^(tile|frame) '
+    marked arches '^(tile|frame|packed) '
     marked models '^(lambert|oren-nayar|oren-nayar-full|ggx/smith-correlated/.*) '
 }
 
