@@ -75,7 +75,7 @@ static void streams(void)
 
 /* Features of a CPU as their makers write them, where that is not the bit's name. */
 static const struct { const char *bit, *words; } features[] = {
-    { "CPU_SSE41", "SSE4.1" }, { "CPU_AVX512", "AVX-512 F, VL, DQ, BW" },
+    { "CPU_SSE41", "SSE4.1" }, { "CPU_FMA_F16C", "FMA, F16C" }, { "CPU_AVX512", "AVX-512 F, VL, DQ, BW" },
 };
 
 static void put_feature(const char *bit, size_t length)
@@ -88,7 +88,7 @@ static void put_feature(const char *bit, size_t length)
     printf("%.*s", (int)length - 4, bit + 4);
 }
 
-/* "CPU_AVX2 | CPU_FMA" as "AVX2, FMA"; "0" as "any". */
+/* "CPU_AVX2 | CPU_FMA_F16C" as "AVX2, FMA, F16C"; "0" as "any". */
 static void put_needs(const char *needs)
 {
     if (!strcmp(needs, "0")) printf("any");
