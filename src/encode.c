@@ -1,7 +1,19 @@
-/* Linear radiance -> 8-bit sRGB, correctly rounded, without a transcendental function. */
+/* Linear radiance -> 8-bit sRGB, correctly rounded, without a transcendental function: by the kernels' approximation
+ * (packed.tmpl.h), or where that is in doubt, by thresholds. */
 #include "internal.h"
 
 #include "../arch/environment.h"
+
+/* The widest vectors that need no question to the CPU. */
+#define FACET_STRICT 1
+#if defined(__SSE2__)
+#include "../arch/sse2.h"
+#elif defined(__aarch64__)
+#include "../arch/neon.h"
+#else
+#include "../arch/scalar.h"
+#endif
+#include "packed.tmpl.h"
 
 /* thresholds[c - 1]: the least float whose encoding by IEC 61966-2-1 is at least c - 1/2, in units of 1/255. The curve
  * rises, so a value's byte is the number of thresholds that it reaches: exact for every float. The numbers are the
@@ -55,19 +67,12 @@ uint8_t facet_srgb_byte(float x)
     return (uint8_t)reached;
 }
 
+/* Of a picture that is not opaque. */
 static uint8_t opacity_byte(const facet_image *image, size_t i)
 {
-    switch (image->opacity_from) {
-    case FACET_OPACITY_STREAM: {
-        const float a = image->opacity[i];
-        return !(a > 0.0f) ? 0 : a >= 1.0f ? 255 : (uint8_t)((double)a * 255.0 + 0.5);      /* exact but for the cast */
-    }
-    case FACET_OPACITY_COVERAGE:
-        return image->coverage[i >> 3] >> (i & 7) & 1 ? 255 : 0;
-    case FACET_OPACITY_FULL:
-        break;
-    }
-    return 255;
+    if (image->opacity_from == FACET_OPACITY_COVERAGE) return image->coverage[i >> 3] >> (i & 7) & 1 ? 255 : 0;
+    const float a = image->opacity[i];
+    return !(a > 0.0f) ? 0 : a >= 1.0f ? 255 : (uint8_t)((double)a * 255.0 + 0.5);      /* exact but for the cast */
 }
 
 static facet_status check(const facet_image *image, facet_error *error)
@@ -91,6 +96,31 @@ static facet_status check(const facet_image *image, facet_error *error)
     return FACET_OK;
 }
 
+/* Radiance from the i-th float of its streams on, `count` of them at most a vector, with zeros behind. */
+static vf3 load_radiance(const facet_image *image, size_t i, size_t count)
+{
+    const float *const *from = image->radiance;
+    if (count == VF_LANES) return (vf3){ vf_load(from[0] + i), vf_load(from[1] + i), vf_load(from[2] + i) };
+    float padded[3][VF_LANES];
+    for (int c = 0; c < 3; c++)
+        for (size_t lane = 0; lane < VF_LANES; lane++) padded[c][lane] = lane < count ? from[c][i + lane] : 0.0f;
+    return (vf3){ vf_load(padded[0]), vf_load(padded[1]), vf_load(padded[2]) };
+}
+
+/* A row, whose radiance begins at the i-th float. */
+static void encode_row(const facet_image *image, size_t i, float exposure, uint8_t *pixel)
+{
+    const size_t end = i + image->width;
+    for (; i < end; i += VF_LANES) {
+        const size_t count = end - i < VF_LANES ? end - i : VF_LANES;
+        float words[VF_LANES];
+        store_pixels((uint8_t *)words, load_radiance(image, i, count), exposure);
+        for (size_t k = 0; k < 4 * count; k++) *pixel++ = ((const uint8_t *)words)[k];
+        if (image->opacity_from == FACET_OPACITY_FULL) continue;
+        for (size_t k = 0; k < count; k++) pixel[4 * k + 3 - 4 * count] = opacity_byte(image, i + k);
+    }
+}
+
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
 static __attribute__((noinline)) facet_status encode(const facet_image *image, facet_error *error)
 {
@@ -100,13 +130,8 @@ static __attribute__((noinline)) facet_status encode(const facet_image *image, f
     const size_t stride = image->stride ? image->stride : image->width;
     const ptrdiff_t pitch = image->pitch ? image->pitch : (ptrdiff_t)(4 * image->width);
     const float exposure = image->exposure > 0.0f ? image->exposure : 1.0f;
-    for (size_t y = 0; y < image->height; y++) {
-        uint8_t *pixel = image->pixels + (ptrdiff_t)y * pitch;
-        for (size_t i = y * stride; i < y * stride + image->width; i++, pixel += 4) {
-            for (int c = 0; c < 3; c++) pixel[c] = facet_srgb_byte(image->radiance[c][i] * exposure);
-            pixel[3] = opacity_byte(image, i);
-        }
-    }
+    for (size_t y = 0; y < image->height; y++)
+        encode_row(image, y * stride, exposure, image->pixels + (ptrdiff_t)y * pitch);
     return FACET_OK;
 }
 

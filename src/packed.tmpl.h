@@ -106,10 +106,10 @@ OP vf srgb_255(vf a)
     return vf_select(vf_lt(a, splat(0.0031308f)), a * (12.92f * 255.0f), p / q);
 }
 
-/* The byte of a radiance in the low bits; `doubtful` gets a sign where rounding may have gone wrong. */
+/* The byte of a radiance in the low bits, 0 of a NaN; `doubtful` gets a sign where rounding may have gone wrong. */
 OP vf pixel_byte(vf radiance, vf exposure, vf *doubtful)
 {
-    vf exact = srgb_255(vf_min(radiance * exposure, splat(1.0f))), byte = exact + 0x1p23f;
+    vf exact = srgb_255(clamp(radiance * exposure, 0.0f, 1.0f)), byte = exact + 0x1p23f;
     vf distance = vf_abs(exact - (byte - 0x1p23f));
     *doubtful = vf_or(*doubtful, vf_bits_minus(splat(0.5f - PIXEL_ERROR), distance));
     return vf_bits_minus(byte, splat(0x1p23f));
