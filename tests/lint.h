@@ -17,6 +17,8 @@ typedef struct { lanes_of_bits m; } vm;
 
 OP vf vf_load(const float *p) { return (vf){ *p }; }
 OP void vf_store(float *p, vf a) { *p = a[0]; }
+OP void vf_stream(float *p, vf a) { vf_store(p, a); }
+OP void vf_streamed(void) { }
 OP vf vf_splat(float a) { return (vf){ a }; }
 
 OP vf vf_sqrt(vf a) { return (vf){ __builtin_sqrtf(a[0]) }; }
@@ -36,6 +38,12 @@ OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
 OP vf vf_shift_left(vf a, int n) { return from_bits(bits_of(a) << n); }
 OP vf vf_shift_right(vf a, int n) { return from_bits(bits_of(a) >> n); }
 OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
+
+OP void vf_store_half(uint16_t *p, vf a)
+{
+    const uint32_t small = bits_of(a + 0.5f) - 0x3f000000, odd = bits_of(a) >> 13 & 1;
+    *p = (uint16_t)(a[0] < 0x1p-14f ? small : (bits_of(a) - 0x38000000 + 0xfff + odd) >> 13);
+}
 
 OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }

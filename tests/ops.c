@@ -1,5 +1,6 @@
 /* Every operation of every vector layer in this build against plain C, exactly (ops.def). */
 #include "bits.h"
+#include "half.h"
 #include "harness.h"
 #include "ops.h"
 #include "targets.h"

@@ -28,6 +28,27 @@ OP void store_splats(float *out, const float *a)
     }
 }
 
+/* To an address of no more than a uint16_t's alignment, nothing beside. */
+OP void store_halves(float *out, const float *a)
+{
+    float inside[VF_LANES];
+    uint16_t half[VF_LANES + 2];
+    for (int lane = 0; lane < VF_LANES; lane++)
+        inside[lane] = a[lane] > 0.0f ? a[lane] < 65504.0f ? a[lane] : 65504.0f : 0.0f;
+    half[0] = half[VF_LANES + 1] = 0xa5a5;
+    vf_store_half(half + 1, vf_load(inside));
+    const int kept = half[0] == 0xa5a5 && half[VF_LANES + 1] == 0xa5a5;
+    for (int lane = 0; lane < VF_LANES; lane++) out[lane] = kept ? (float)half[lane + 1] : OPS_BROKEN;
+}
+
+OP void store_streamed(float *out, vf a)
+{
+    _Alignas(vf) float all[VF_LANES];
+    vf_stream(all, a);
+    vf_streamed();
+    vf_store(out, vf_load(all));
+}
+
 /* A case for every constant that a shift can have. */
 #define SHIFT(name, n)   case n: vf_store(all, name(A, n)); break;
 #define SHIFT_4(name, n) SHIFT(name, n) SHIFT(name, n + 1) SHIFT(name, n + 2) SHIFT(name, n + 3)
@@ -55,6 +76,8 @@ OP void store_splats(float *out, const float *a)
 #define APPLY_SPLAT(name)   store_splats(out + i, a + i)
 #define APPLY_LOAD(name)    vf_store(out + i, name(a + i))
 #define APPLY_STORE(name)   name(out + i, A)
+#define APPLY_STREAM(name)  store_streamed(out + i, A)
+#define APPLY_HALF(name)    store_halves(out + i, a + i)
 
 #define FUNCTION(name, apply)                                                                                         \
     static void apply_##name(const float *a, const float *b, const float *c, float *out, size_t count)               \
