@@ -37,7 +37,8 @@ OP vf snorm16_32767(vf words, int index)
 
 /* Cigolle et al. 2014: x and y of the octahedron |x| + |y| + |z| = 1, whose lower half is folded outwards over the
  * upper one's edges: z = 1 - |x| - |y|, and where it is below 0, |x| and |y| lose as much. Times 32767 all is integers;
- * the normalisation leaves less than 2.5 units of 2^-24 in each component, relative. */
+ * the normalisation leaves at most 3.5 units of 2^-24 in each component, relative: strict, of every pair the worst is
+ * (3158, 23375). Nearly all of it is length: what turns the normal is less than one unit. */
 OP vf3 octahedral(vf words)
 {
     vf x = snorm16_32767(words, 0), y = snorm16_32767(words, 1), z = 32767.0f - vf_abs(x) - vf_abs(y);
@@ -91,7 +92,8 @@ OP vf3 unpacked_3(uint32_t stream, const plan_fields *plan, const facet_packed *
 /* ---- Out --------------------------------------------------------------------------------------------------------- */
 
 /* 255 times the curve of IEC 61966-2-1 for a in [0, 1], within PIXEL_ERROR. Above the linear part, of the root s, 255
- * (1.055 s^(5/6) - 0.055) as a rational function. */
+ * (1.055 s^(5/6) - 0.055) as a rational function. Of all floats the worst is 2^-12.29 at 0x1.b4502cp-1 where it fuses,
+ * else 2^-12.32 at 0x1.aeec5ep-1. */
 #define PIXEL_ERROR 0x1p-12f
 OP vf srgb_255(vf a)
 {

@@ -346,6 +346,41 @@ static uint64_t hash_pixels(void)
     return hash;
 }
 
+static void random_bytes(test_random *r, uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) bytes[i] = (uint8_t)random_u64(r);
+}
+
+#define PACKED_CASE "oren-nayar+ggx/smith-correlated/schlick/uncoupled"
+
+/* Everything packed, under the sun of hash_plain: halves, then pixels. */
+static uint64_t hash_packed(facet_arch arch)
+{
+    static int16_t normal[2 * COUNT];
+    static _Alignas(4) uint8_t albedo_roughness[4 * COUNT], f0_sigma[4 * COUNT], pixels[4 * COUNT];
+    static uint16_t half[3][COUNT];
+    static const facet_light sun = { .direction = { 0.6f, -0.48f, 0.64f }, .irradiance = { 0.5f, 1, 2 } };
+    static const facet_camera camera = { .corner = { -1, 0.75f, -1.5f }, .across = { 0x1p-5f, 0, 0x1p-9f },
+                                         .down = { 0x1p-10f, -0x1.8p-5f, 0 }, .x = 3, .y = 2, .width = 61 };
+    test_random r = { 8 };
+    for (int i = 0; i < 2 * COUNT; i++) normal[i] = (int16_t)(uint16_t)random_u64(&r);
+    random_bytes(&r, albedo_roughness, sizeof albedo_roughness);
+    random_bytes(&r, f0_sigma, sizeof f0_sigma);
+    const kernel_case *k = find_case(PACKED_CASE);
+    facet_material m = k->material;
+    m.streams = k->promised;
+    const facet_batch b = { .count = COUNT, .lights = &sun, .light_count = 1,
+                            .packed = { .normal = normal, .albedo_roughness = albedo_roughness, .f0_sigma = f0_sigma,
+                                        .camera = &camera, .half = { half[0], half[1], half[2] }, .pixels = pixels,
+                                        .exposure = 1.5f } };
+    shade(&m, arch, &b);
+    uint64_t hash = HASH_START;
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < COUNT; i++) hash = hash_byte(hash_byte(hash, half[c][i] >> 8), half[c][i] & 0xff);
+    for (size_t i = 0; i < sizeof pixels; i++) hash = hash_byte(hash, pixels[i]);
+    return hash;
+}
+
 /* ---- The committed file ------------------------------------------------------------------------------------------ */
 
 typedef struct { char name[64]; uint64_t hash; } golden_row;
@@ -384,6 +419,7 @@ static bool write_committed(void)
     for (int i = 0; i < case_count(); i++)
         fprintf(file, "%-52s %016" PRIx64 "\n", case_at(i)->name, hash_case(case_at(i), FACET_ARCH_SCALAR));
     fprintf(file, "%-52s %016" PRIx64 "\n", "plans", hash_plans(FACET_ARCH_SCALAR));
+    fprintf(file, "%-52s %016" PRIx64 "\n", "packed", hash_packed(FACET_ARCH_SCALAR));
     fprintf(file, "%-52s %016" PRIx64 "\n", "pixels", hash_pixels());
     return !fclose(file);
 }
@@ -404,8 +440,8 @@ static void check_rows(void)
 {
     test("every row of golden.txt is of a kernel");
     if (!whole_build()) skip("this build has fewer models");
-    else expect(committed_count == case_count() + 2, "%d rows for %d kernels, plans and pixels", committed_count,
-                case_count());
+    else expect(committed_count == case_count() + 3, "%d rows for %d kernels, plans, packed and pixels",
+                committed_count, case_count());
 }
 
 static void check_arch(facet_arch arch)
@@ -418,6 +454,9 @@ static void check_arch(facet_arch arch)
     test("%s plans", word);
     if (!whole_build()) skip("this build has fewer models");
     else check_hash("plans", hash_plans(arch));
+    test("%s packed", word);
+    if (!find_case(PACKED_CASE)) skip("this build lacks " PACKED_CASE);
+    else check_hash("packed", hash_packed(arch));
 }
 
 void suite_golden(void)

@@ -58,7 +58,8 @@ static const struct { const char *name; void (*run)(void); } suites[] = {
     { "fits", suite_fits },                    { "api", suite_api },                  { "encode", suite_encode },
     { "conversions", suite_conversions },  { "metals", suite_metals },        { "truths", suite_truths },
     { "accuracy", suite_accuracy },        { "stability", suite_stability },  { "physics", suite_physics },
-    { "agreement", suite_agreement },      { "golden", suite_golden },        { "environment", suite_environment },
+    { "agreement", suite_agreement },      { "packed", suite_packed },        { "golden", suite_golden },
+    { "environment", suite_environment },
 };
 
 static bool run_suite(const char *name)

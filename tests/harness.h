@@ -38,6 +38,7 @@ void suite_accuracy(void);
 void suite_stability(void);
 void suite_physics(void);
 void suite_agreement(void);
+void suite_packed(void);
 void suite_golden(void);
 void suite_environment(void);
 

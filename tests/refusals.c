@@ -568,6 +568,125 @@ static void test_batches(void)
     }
 }
 
+/* ---- Packed streams ---------------------------------------------------------------------------------------------- */
+
+static const facet_camera good_camera = { .corner = { 0, 0, -1 }, .across = { 1, 0, 0 }, .down = { 0, 1, 0 } };
+
+/* A batch that has all of its streams packed, and goes to halves and pixels. */
+typedef struct { uint32_t words[COUNT]; uint16_t half[3][COUNT]; } packed_memory;
+static packed_memory room;
+
+static void pack(facet_batch *b, facet_camera *camera)
+{
+    *camera = good_camera;
+    camera->width = 2;
+    b->packed = (facet_packed){ .normal = (int16_t *)room.words, .albedo_roughness = (uint8_t *)room.words,
+                                .f0_sigma = (uint8_t *)room.words, .camera = camera, .pixels = (uint8_t *)room.words,
+                                .half = { room.half[0], room.half[1], room.half[2] } };
+    for (int c = 0; c < 3; c++) b->normal[c] = b->view[c] = b->albedo[c] = b->f0[c] = b->radiance[c] = NULL;
+    b->alpha = b->sigma = NULL;
+}
+
+#define PACKED_REFUSES(plan, change, code, field, index)                                                              \
+    do {                                                                                                              \
+        packed_memory untouched;                                                                                      \
+        facet_camera camera;                                                                                          \
+        memset(&room, CANARY, sizeof room);                                                                           \
+        untouched = room;                                                                                             \
+        BATCH_REFUSES(plan, (pack(&b, &camera), change), code, field, index);                                         \
+        expect(!memcmp(&room, &untouched, sizeof room), "%s: a packed stream was written", #change);                  \
+    } while (0)
+#define PACKED_ACCEPTS(plan, change)                                                                                  \
+    do {                                                                                                              \
+        facet_camera camera;                                                                                          \
+        BATCH_ACCEPTS(plan, (pack(&b, &camera), change));                                                             \
+    } while (0)
+
+/* A place that no float could have. */
+#define OFF(pointer, bytes) ((void *)((char *)(pointer) + (bytes)))
+
+static void test_packed_addresses(const facet_plan *plan)
+{
+    test("packed streams that are not where they may be, or not there");
+    PACKED_ACCEPTS(plan, (void)0);
+    for (int k = 1; k < 4; k++) {
+        PACKED_REFUSES(plan, b.packed.normal = OFF(room.words, k), FACET_ERROR_VALUE, "packed.normal", -1);
+        PACKED_REFUSES(plan, b.packed.albedo_roughness = OFF(room.words, k), FACET_ERROR_VALUE,
+                       "packed.albedo_roughness", -1);
+        PACKED_REFUSES(plan, b.packed.f0_sigma = OFF(room.words, k), FACET_ERROR_VALUE, "packed.f0_sigma", -1);
+        PACKED_REFUSES(plan, b.packed.pixels = OFF(room.words, k), FACET_ERROR_VALUE, "packed.pixels", -1);
+    }
+    for (int c = 0; c < 3; c++) {
+        PACKED_REFUSES(plan, b.packed.half[c] = NULL, FACET_ERROR_NULL, "packed.half", c);
+        PACKED_REFUSES(plan, (b.packed.half[0] = b.packed.half[1] = b.packed.half[2] = NULL, b.packed.pixels = NULL,
+                              b.radiance[(c + 1) % 3] = b.radiance[(c + 2) % 3] = radiance[0]), FACET_ERROR_NULL,
+                       "radiance", c);
+    }
+    PACKED_REFUSES(plan, b.packed.normal = NULL, FACET_ERROR_NULL, "normal", -1);
+    PACKED_REFUSES(plan, b.packed.camera = NULL, FACET_ERROR_NULL, "view", -1);
+    PACKED_REFUSES(plan, b.packed.albedo_roughness = NULL, FACET_ERROR_NULL, "albedo", -1);
+    PACKED_REFUSES(plan, b.packed.f0_sigma = NULL, FACET_ERROR_NULL, "sigma", -1);
+    PACKED_ACCEPTS(plan, b.packed.pixels = NULL);
+    PACKED_ACCEPTS(plan, b.packed.half[0] = b.packed.half[1] = b.packed.half[2] = NULL);
+    PACKED_ACCEPTS(plan, b.uniform = ALL_STREAMS);
+}
+
+static void test_packed_numbers(const facet_plan *plan)
+{
+    test("an exposure and cameras out of their domain; packed radiance does not accumulate");
+    PACKED_REFUSES(plan, b.flags = FACET_ACCUMULATE, FACET_ERROR_ENUM, "flags", -1);
+    PACKED_REFUSES(plan, (b.flags = FACET_ACCUMULATE, b.packed.pixels = NULL), FACET_ERROR_ENUM, "flags", -1);
+    PACKED_REFUSES(plan, b.packed.exposure = NAN, FACET_ERROR_VALUE, "packed.exposure", -1);
+    PACKED_REFUSES(plan, b.packed.exposure = INFINITY, FACET_ERROR_VALUE, "packed.exposure", -1);
+    PACKED_REFUSES(plan, b.packed.exposure = -FLT_TRUE_MIN, FACET_ERROR_VALUE, "packed.exposure", -1);
+    PACKED_ACCEPTS(plan, b.packed.exposure = -0.0f);
+    PACKED_ACCEPTS(plan, b.packed.exposure = FLT_MAX);
+    for (int c = 0; c < 3; c++) {
+        PACKED_REFUSES(plan, camera.corner[c] = NAN, FACET_ERROR_VALUE, "packed.camera.corner", -1);
+        PACKED_REFUSES(plan, camera.across[c] = INFINITY, FACET_ERROR_VALUE, "packed.camera.across", -1);
+        PACKED_REFUSES(plan, camera.down[c] = -INFINITY, FACET_ERROR_VALUE, "packed.camera.down", -1);
+        PACKED_ACCEPTS(plan, camera.down[c] = -FLT_MAX);
+    }
+}
+
+/* COUNT is 5. */
+static void test_packed_pixels(const facet_plan *plan)
+{
+    enum { PIXELS = 1 << 20 };
+    test("cameras' columns and rows end below 2^20");
+    PACKED_ACCEPTS(plan, (camera.width = 0, camera.x = PIXELS - COUNT, camera.y = PIXELS - 1));
+    PACKED_REFUSES(plan, (camera.width = 0, camera.x = PIXELS - COUNT + 1), FACET_ERROR_VALUE, "packed.camera.x", -1);
+    PACKED_REFUSES(plan, (camera.width = 0, camera.y = PIXELS), FACET_ERROR_VALUE, "packed.camera.y", -1);
+    PACKED_ACCEPTS(plan, (camera.width = 2, camera.x = PIXELS - 2, camera.y = PIXELS - 3));
+    PACKED_REFUSES(plan, (camera.width = 2, camera.x = PIXELS - 1), FACET_ERROR_VALUE, "packed.camera.x", -1);
+    PACKED_REFUSES(plan, (camera.width = 2, camera.y = PIXELS - 2), FACET_ERROR_VALUE, "packed.camera.y", -1);
+    PACKED_ACCEPTS(plan, (camera.width = PIXELS, camera.x = PIXELS - COUNT));
+    PACKED_REFUSES(plan, (camera.width = PIXELS, camera.x = PIXELS - COUNT + 1), FACET_ERROR_VALUE, "packed.camera.x",
+                   -1);
+    PACKED_REFUSES(plan, camera.width = PIXELS + 1, FACET_ERROR_VALUE, "packed.camera.width", -1);
+    PACKED_REFUSES(plan, camera.width = UINT32_MAX, FACET_ERROR_VALUE, "packed.camera.width", -1);
+    PACKED_REFUSES(plan, camera.x = UINT32_MAX, FACET_ERROR_VALUE, "packed.camera.x", -1);
+    PACKED_REFUSES(plan, camera.y = UINT32_MAX, FACET_ERROR_VALUE, "packed.camera.y", -1);
+    PACKED_ACCEPTS(plan, (camera.width = 1, camera.y = PIXELS - COUNT));
+    PACKED_REFUSES(plan, (camera.width = 1, camera.y = PIXELS - COUNT + 1), FACET_ERROR_VALUE, "packed.camera.y", -1);
+    PACKED_ACCEPTS(plan, (b.count = 0, camera.x = PIXELS, camera.y = PIXELS, camera.width = 0));
+    PACKED_REFUSES(plan, (b.count = 0, camera.x = PIXELS + 1), FACET_ERROR_VALUE, "packed.camera.x", -1);
+}
+
+static void test_packed(void)
+{
+    const facet_plan plan = plan_with_streams(FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA | FACET_STREAM_ALPHA
+                                              | FACET_STREAM_F0);
+    const facet_plan unpromised = plan_with_streams(0);
+    test_packed_addresses(&plan);
+    test_packed_numbers(&plan);
+    test_packed_pixels(&plan);
+
+    test("packed parameters that nothing promised are ignored");
+    PACKED_ACCEPTS(&unpromised, (void)0);
+    PACKED_ACCEPTS(&unpromised, b.packed.albedo_roughness = b.packed.f0_sigma = NULL);
+}
+
 void test_refusals(void)
 {
     stream[0] = 1;
@@ -582,4 +701,5 @@ void test_refusals(void)
     test_promises();
     test_lights();
     test_batches();
+    test_packed();
 }
