@@ -167,7 +167,7 @@ static void draw_sample(test_random *r, packed_samples *p, int i)
 static void draw_samples(test_random *r, packed_samples *p)
 {
     enum { SIDE = 2048 };
-    const double step = 2. / SIDE;
+    const double step = 2 / (double)SIDE;
     double forward[3], right[3], down[3];
     around(r, (double[]){ 0, 0, 1 }, between(r, -1, 1), forward);
     around(r, forward, 0, right);
