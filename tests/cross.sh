@@ -72,7 +72,7 @@ cross_jobs() {
     job emulated aarch64 aarch64-linux-gnu   qemu-aarch64 "gcc-aarch64-linux-gnu libc6-dev-arm64-cross"
     # Scalar alone, and that has the bytes of x86 where it does not fuse, of aarch64 where it does: how exact it is is
     # measured there.
-    bytes="ops elementary fits api encode conversions metals stability agreement golden environment"
+    bytes="ops elementary fits api encode conversions metals stability agreement packed golden environment"
     job emulated armv7   arm-linux-gnueabihf qemu-arm     "gcc-arm-linux-gnueabihf libc6-dev-armhf-cross" $bytes
     job emulated s390x   s390x-linux-gnu     qemu-s390x   "gcc-s390x-linux-gnu libc6-dev-s390x-cross" $bytes
     job emulated riscv64 riscv64-linux-gnu   qemu-riscv64 "gcc-riscv64-linux-gnu libc6-dev-riscv64-cross" $bytes
