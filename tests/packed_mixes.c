@@ -1,6 +1,7 @@
 /* Batches at random of which some streams are packed, some floats, some one value, some the material's numbers. Strict
- * bytes are those of the scalar kernel over unpacked floats; in every tier a sample's are those that it has alone.
- * Nothing beside is read or written. */
+ * bytes are those of the scalar kernel over unpacked floats, and fast ones those of the same kernel over them where
+ * nothing is unpacked that may fuse; in every tier a sample's are those that it has alone. Nothing beside is read or
+ * written. */
 #include "packed.h"
 
 #include "bits.h"
@@ -93,7 +94,14 @@ typedef struct { float radiance[3][MOST]; size_t invalid; } outcome;
 
 static bool is_covered(const mix *m, size_t i) { return !m->covered_by_bits || m->coverage[i / 8] >> i % 8 & 1; }
 
-/* By the scalar strict kernel from floats. */
+/* The fast tier unpacks vectors with fused operations, and the plan derives from its numbers without. */
+static bool is_that_of_floats(const mix *m)
+{
+    const uint32_t vectors = FACET_STREAM_NORMAL | FACET_STREAM_VIEW;
+    return m->target.tier == FACET_TIER_STRICT || (!(m->packed & vectors) && m->promised == m->set->reads);
+}
+
+/* From floats, strictly by the scalar kernel where there is one, else by the mix's own. */
 static void shade_floats(const mix *m, outcome *o)
 {
     facet_plan plan;
@@ -101,7 +109,9 @@ static void shade_floats(const mix *m, outcome *o)
     places p = { .visibility = m->visibility, .coverage = m->covered_by_bits ? m->coverage : NULL, .count = m->count,
                  .invalid = m->counted ? &o->invalid : NULL };
     const facet_material material = material_of(m, m->set->reads);
-    const facet_target target = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
+    facet_target target = m->target;
+    if (target.tier == FACET_TIER_STRICT && facet_has(FACET_KIND_ARCH, FACET_ARCH_SCALAR))
+        target.arch = FACET_ARCH_SCALAR;
     for (int c = 0; c < LIGHT_AT; c++) p.values[c] = m->values[c];
     for (int c = 0; c < 3; c++) p.radiance[c] = o->radiance[c];
     o->invalid = 0;
@@ -247,21 +257,21 @@ static void check_mix(test_random *r, const mix *m)
 {
     static outcome want, alone;
     layout l;
-    const bool strict = m->target.tier == FACET_TIER_STRICT;
+    const bool floats = is_that_of_floats(m);
     const float *const radiance[3] = { want.radiance[0], want.radiance[1], want.radiance[2] };
     facet_plan plan;
     const facet_material material = material_of(m, m->promised);
     facet_error error;
     facet_plan_init(&plan, &material, m->target, &error);
     if (!expect(!error.code, "%s is refused; %s", error.field, words_of(m, 0))) return;
-    if (strict) shade_floats(m, &want);
-    shade_each(m, &plan, strict ? &alone : &want);
+    if (floats) shade_floats(m, &want);
+    shade_each(m, &plan, floats ? &alone : &want);
 
     lay_out(r, m, &l);
     for (size_t i = 0; i < m->count; i++) {
         if (!is_covered(m, i)) continue;
         set_right(m, &l, radiance, i);
-        for (int c = 0; c < 3 && strict; c++)
+        for (int c = 0; c < 3 && floats; c++)
             expect(to_bits(alone.radiance[c][i]) == to_bits(want.radiance[c][i]), "alone %a, from floats %a; %s",
                    (double)alone.radiance[c][i], (double)want.radiance[c][i], words_of(m, i));
     }
@@ -269,7 +279,7 @@ static void check_mix(test_random *r, const mix *m)
     const char *fault = fault_of(shade, &c);
     expect(!fault, "%s; %s", fault, words_of(m, 0));
     expect(!c.error.code, "%s is refused; %s", c.error.field, words_of(m, 0));
-    expect(l.invalid == want.invalid && (!strict || alone.invalid == want.invalid), "%zu invalid, not %zu; %s",
+    expect(l.invalid == want.invalid && (!floats || alone.invalid == want.invalid), "%zu invalid, not %zu; %s",
            l.invalid, want.invalid, words_of(m, 0));
     check_memory(m);
 }
