@@ -199,7 +199,7 @@ static void shade(const facet_plan *plan, packed_samples *p)
 /* What rounding n and v costs beside the case's bound, in units of 2^-24 over alpha and vh: v + l turns by v's error
  * over |v + l| = 2 vh, and D by twice that over alpha. 1.25 times the worst of 3072000 samples on each target, 2.392,
  * where unpacking, which turns little else, costs 161783 units: nl 0.0284067, nv 0.0290624, vh 0.0287346, alpha
- * 0.000553633. Of n's rounding alone it is 0.46. */
+ * 0.000553633. Nearly all of it is v's. */
 #define UNPACKING 2.99
 
 static void check_sample(const facet_material *m, const error_bound *bound, const packed_samples *p, int i)
