@@ -233,7 +233,9 @@ static facet_status check_batch(job *j, const facet_batch *b, facet_error *error
     facet_status status = check_lights(j, b, error);
     if (!status) status = take_ambient(j, b, error);
     if (!status) status = gather_streams(j, b, error);
-    if (!status && (j->unpacked || j->packs)) status = check_packed(j, error);
+    const facet_packed *p = j->packed;
+    if (!status && (p->normal || p->albedo_roughness || p->f0_sigma || p->camera || j->packs))
+        status = check_packed(j, error);
     for (int c = 0; c < 3 && !status && !j->packs; c++)
         if (!b->radiance[c]) status = refuse(error, FACET_ERROR_NULL, "radiance", c);
     return status;
