@@ -7,11 +7,8 @@
 #include "models.tmpl.h"
 
 /* How far left in a word the part of so many bits stands that is the index-th in memory. */
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-#define PLACE(index, bits) (32 - (bits) * ((index) + 1))
-#else
-#define PLACE(index, bits) ((bits) * (index))
-#endif
+#define BIG_END_FIRST (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__)
+#define PLACE(index, bits) (BIG_END_FIRST ? 32 - (bits) * ((index) + 1) : (bits) * (index))
 
 /* ---- In ---------------------------------------------------------------------------------------------------------- */
 
@@ -120,7 +117,7 @@ OP vf pixel_byte(vf radiance, vf exposure, vf *doubtful)
 /* R, G, B and 255 in memory. */
 OP vf pixel_words(vf3 bytes)
 {
-    vf opaque = splat(__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 0x1.fep-142f : -0x1p127f);
+    vf opaque = splat(BIG_END_FIRST ? 0x1.fep-142f : -0x1p127f);
     vf rg = vf_or(vf_shift_left(bytes.x, PLACE(0, 8)), vf_shift_left(bytes.y, PLACE(1, 8)));
     return vf_or(vf_or(rg, vf_shift_left(bytes.z, PLACE(2, 8))), opaque);
 }
