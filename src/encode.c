@@ -4,11 +4,11 @@
 
 #include "../arch/environment.h"
 
-/* The widest vectors that need no question to the CPU. */
+/* The widest vectors of this build that need no question to the CPU. */
 #define FACET_STRICT 1
-#if defined(__SSE2__)
+#if FACET_ARCH_sse2
 #include "../arch/sse2.h"
-#elif defined(__aarch64__)
+#elif FACET_ARCH_neon
 #include "../arch/neon.h"
 #else
 #include "../arch/scalar.h"
@@ -75,7 +75,7 @@ static uint8_t opacity_byte(const facet_image *image, size_t i)
     return !(a > 0.0f) ? 0 : a >= 1.0f ? 255 : (uint8_t)((double)a * 255.0 + 0.5);      /* exact but for the cast */
 }
 
-static facet_status check(const facet_image *image, facet_error *error)
+static __attribute__((noinline, cold)) facet_status check(const facet_image *image, facet_error *error)
 {
     for (int c = 0; c < 3; c++)
         if (!image->radiance[c]) return refuse(error, FACET_ERROR_NULL, "radiance", c);

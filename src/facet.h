@@ -336,7 +336,8 @@ typedef struct facet_camera {
  *   half              radiance goes there as IEEE 754 binary16, to nearest, at most 65504; not into `radiance`.
  *   pixels            and there as facet_encode has it: sRGB R, G, B, and 255. Both may be given; neither accumulates.
  *   exposure          multiplies the radiance of `pixels`; 0: 1. Finite, >= 0.
- * Streams of as many bytes a sample may be one another exactly, never a partial overlap. The error bounds hold against
+ * A build of some models (make MODELS=...) has packed streams where `packed` is among the words, and else refuses them
+ * (MODEL). Streams of as many bytes a sample may be one another exactly, never a partial overlap. The error bounds hold against
  * what these formulas give of the packed numbers, but that rounding n and v to floats adds up to 3 2^-24/(alpha vh) of
  * what is specular, where a ray is not much shorter than the three vectors that it is the sum of; rounding to halves
  * or pixels comes on top. */

@@ -175,7 +175,7 @@ static facet_status check_words(const void *packed, const char *field, facet_err
     return (uintptr_t)packed % sizeof(bits32) ? refuse(error, FACET_ERROR_VALUE, field, -1) : FACET_OK;
 }
 
-static facet_status check_packed(const job *j, facet_error *error)
+static __attribute__((noinline, cold)) facet_status check_packed(const job *j, facet_error *error)
 {
     const facet_packed *p = j->packed;
     const bool halves = p->half[0] || p->half[1] || p->half[2];
@@ -235,7 +235,7 @@ static facet_status check_batch(job *j, const facet_batch *b, facet_error *error
     if (!status) status = gather_streams(j, b, error);
     const facet_packed *p = j->packed;
     if (!status && (p->normal || p->albedo_roughness || p->f0_sigma || p->camera || j->packs))
-        status = check_packed(j, error);
+        status = FACET_HAS(packed) ? check_packed(j, error) : refuse(error, FACET_ERROR_MODEL, "packed", -1);
     for (int c = 0; c < 3 && !status && !j->packs; c++)
         if (!b->radiance[c]) status = refuse(error, FACET_ERROR_NULL, "radiance", c);
     return status;

@@ -416,8 +416,8 @@ OP void store1(block_values values, int component, size_t at, vf a) { vf_store(v
 
 /* The streams that are packed: `count` of a block's samples from `at` on, the batch's from `sample` on, whose words are
  * from the i-th on. Stream by stream, so that one vector's arithmetic fills another's latencies. */
-OP void unpack_some(const job *j, const facet_packed *p, size_t i, size_t sample, block_values values, size_t at,
-                    size_t count)
+static __attribute__((noinline)) void unpack_some(const job *j, const facet_packed *p, size_t i, size_t sample,
+                                                  block_values values, size_t at, size_t count)
 {
 #define FACET_STREAM(id, field, components, ...)                                                                      \
     if (PACKABLE & FACET_STREAM_##id && j->unpacked & FACET_STREAM_##id)                                              \
@@ -428,7 +428,7 @@ OP void unpack_some(const job *j, const facet_packed *p, size_t i, size_t sample
 }
 
 /* A block of them, with zeros behind its words. */
-static __attribute__((noinline)) void unpack(const job *j, const block *b, block_values values)
+static void unpack(const job *j, const block *b, block_values values)
 {
     const facet_packed *p = j->packed;
     const size_t whole = b->count - b->count % VF_LANES, left = b->count - whole, i = b->i + whole;
@@ -447,28 +447,39 @@ static __attribute__((noinline)) void unpack(const job *j, const block *b, block
     unpack_some(j, &end, 0, i, values, whole, VF_LANES);
 }
 
-/* Those samples of a vector at `at` that b covers, of `count`. */
-OP uint32_t covered_lanes(const block *b, size_t at, size_t count)
+/* Vectors of radiance from its floats at `at` to `end`, as halves and pixels, to samples from i + at on. */
+static __attribute__((noinline)) void pack_vectors(const facet_packed *p, size_t i, float *const *radiance, size_t at,
+                                                   size_t end)
 {
-    const uint32_t here = LANES(count < VF_LANES ? count : VF_LANES);
+    for (; at < end; at += VF_LANES)
+        store_packed(p, i + at,
+                     (vf3){ vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) });
+}
+
+/* Those samples of a vector at `at` that b covers. */
+OP uint32_t covered_lanes(const block *b, size_t at)
+{
+    const size_t left = b->count - at;
+    const uint32_t here = LANES(left < VF_LANES ? left : VF_LANES);
     return b->whole ? here : (uint32_t)(b->covered >> at) & here;
 }
 
-/* Some samples of a vector, as halves and pixels. */
-static __attribute__((noinline)) void pack_some(const job *j, const block *b, size_t at, uint32_t lanes)
+/* Some samples of a vector at `at`. */
+static void pack_some(const job *j, const block *b, size_t at, uint32_t lanes)
 {
     const facet_packed *p = j->packed;
-    float radiance[3][VF_LANES], words[VF_LANES];
+    float memory[3][VF_LANES], words[VF_LANES], *radiance[3];
     uint16_t half[3][VF_LANES];
     facet_packed some;
     for (int c = 0; c < 3; c++) {
         for (size_t lane = 0; lane < VF_LANES; lane++)
-            radiance[c][lane] = lanes >> lane & 1 ? b->radiance[c][at + lane] : 0.0f;
+            memory[c][lane] = lanes >> lane & 1 ? b->radiance[c][at + lane] : 0.0f;
+        radiance[c] = memory[c];
         some.half[c] = p->half[c] ? half[c] : 0;
     }
     some.pixels = p->pixels ? (uint8_t *)words : 0;
     some.exposure = p->exposure;
-    store_packed(&some, 0, (vf3){ vf_load(radiance[0]), vf_load(radiance[1]), vf_load(radiance[2]) });
+    pack_vectors(&some, 0, radiance, 0, VF_LANES);
     for (size_t lane = 0, i = b->i + at; lane < VF_LANES; lane++, i++) {
         if (!(lanes >> lane & 1)) continue;
         for (int c = 0; c < 3 && p->half[c]; c++) p->half[c][i] = half[c][lane];
@@ -476,16 +487,14 @@ static __attribute__((noinline)) void pack_some(const job *j, const block *b, si
     }
 }
 
-/* What was shaded of a block, as halves and pixels. */
-static __attribute__((noinline)) void pack(const job *j, const block *b)
+/* What was shaded of a block. */
+static void pack(const job *j, const block *b)
 {
-    for (size_t at = 0; at < b->count; at += VF_LANES) {
-        const uint32_t lanes = covered_lanes(b, at, b->count - at);
-        if (lanes == LANES(VF_LANES)) {
-            float *const *radiance = b->radiance;
-            store_packed(j->packed, b->i + at,
-                         (vf3){ vf_load(radiance[0] + at), vf_load(radiance[1] + at), vf_load(radiance[2] + at) });
-        } else if (lanes) pack_some(j, b, at, lanes);
+    const size_t whole = covered_end(b, 0) / VF_LANES * VF_LANES;
+    pack_vectors(j->packed, b->i, b->radiance, 0, whole);
+    for (size_t at = whole; at < b->count; at += VF_LANES) {
+        const uint32_t lanes = covered_lanes(b, at);
+        if (lanes) pack_some(j, b, at, lanes);
     }
 }
 
@@ -551,7 +560,9 @@ OP size_t shade_whole_block(const job *j, const block *b, block_shader *shade)
 
 void KERNEL(job *j)
 {
-    const bool derived = j->plan->derived, in_blocks = derived || j->unpacked || j->packs || j->coverage;
+    const bool derived = j->plan->derived;
+    const bool unpacks = FACET_HAS(packed) && j->unpacked, packs = FACET_HAS(packed) && j->packs;
+    const bool in_blocks = derived || unpacks || packs || j->coverage;
     const choice chosen = choose_shader(j);
     const size_t aligned = in_blocks ? j->count : samples_to_alignment(j);
     size_t invalid = 0, next;
@@ -570,11 +581,11 @@ void KERNEL(job *j)
         b.count = next - i;
         b.streams = i >= aligned;
         if (!b.whole) b.covered = covered_samples(j, i, b.count);
-        for (int c = 0; c < 3; c++) b.radiance[c] = j->packs ? radiance[c] : j->radiance[c] + i;
-        if (j->unpacked) unpack(j, &b, values);
+        for (int c = 0; c < 3; c++) b.radiance[c] = packs ? radiance[c] : j->radiance[c] + i;
+        if (unpacks) unpack(j, &b, values);
         if (derived) derive(j, &b, values);
         invalid += shade_whole_block(j, &b, chosen.shade);
-        if (j->packs) pack(j, &b);
+        if (packs) pack(j, &b);
     }
     if (aligned < j->count) vf_streamed();
     if (j->invalid) *j->invalid += invalid;
