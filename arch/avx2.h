@@ -22,6 +22,7 @@ OP void vf_stream(float *p, vf a) { _mm256_stream_ps(p, a); }
 OP void vf_streamed(void) { _mm_sfence(); }
 OP vf vf_splat(float a) { return _mm256_set1_ps(a); }
 
+OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return _mm256_sqrt_ps(a); }
 OP vf vf_min(vf a, vf b) { return _mm256_min_ps(a, b); }
 OP vf vf_max(vf a, vf b) { return _mm256_max_ps(a, b); }

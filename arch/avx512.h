@@ -22,6 +22,7 @@ OP void vf_stream(float *p, vf a) { _mm512_stream_ps(p, a); }
 OP void vf_streamed(void) { _mm_sfence(); }
 OP vf vf_splat(float a) { return _mm512_set1_ps(a); }
 
+OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }
 OP vf vf_min(vf a, vf b) { return _mm512_min_ps(a, b); }
 OP vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }

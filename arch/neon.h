@@ -21,6 +21,21 @@ OP void vf_stream(float *p, vf a) { vf_store(p, a); }
 OP void vf_streamed(void) { }
 OP vf vf_splat(float a) { return vdupq_n_f32(a); }
 
+#if FACET_STRICT
+OP vf vf_div(vf a, vf b) { return a / b; }
+#else
+/* The estimate of 1/b is within 2^-8.4, after a Newton step within 2^-16.8; q is corrected by what it leaves of a.
+ * As llvm-mca computes them, the loops of special.def take 14 to 38 % fewer cycles of a cortex-a72 than by the divider
+ * alone, and 19 % fewer to 3 % more of a neoverse-n1. Square roots made likewise cost the latter 7 to 14 %. */
+OP vf vf_div(vf a, vf b)
+{
+    vf r = vrecpeq_f32(b);
+    r = r * vrecpsq_f32(b, r);
+    vf q = a * r;
+    return vfmaq_f32(q, r, vfmsq_f32(a, b, q));
+}
+#endif
+
 /* vminq and vmaxq treat NaN and -0 otherwise than a < b ? a : b does. */
 OP vf vf_sqrt(vf a) { return vsqrtq_f32(a); }
 OP vf vf_min(vf a, vf b) { return vbslq_f32(vcltq_f32(a, b), a, b); }

@@ -37,6 +37,9 @@ OP void vf_store_half(uint16_t *p, vf a)
     *p = (uint16_t)(a < 0x1p-14f ? small : (bits - 0x38000000 + 0xfff + odd) >> 13);
 }
 
+/* a / b; in the fast tier it may be near that. Where b is a normal float and |a/b| < 2^127: within 0.51 units in the
+ * last place plus 2^-149/|b|; 0 for a = 0, 1 for 1/1, at most 1 for |a| <= |b|. NaN of a NaN; elsewhere anything. */
+OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return __builtin_sqrtf(a); }
 OP vf vf_min(vf a, vf b) { return a < b ? a : b; }
 OP vf vf_max(vf a, vf b) { return a > b ? a : b; }

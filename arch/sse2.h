@@ -32,6 +32,7 @@ OP void vf_store_half(uint16_t *p, vf a)
     _mm_storel_epi64((__m128i_u *)p, _mm_packs_epi32(bits, bits));
 }
 
+OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
 OP vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
 OP vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }

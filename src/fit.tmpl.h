@@ -15,6 +15,6 @@ OP vf fit_polynomial(const float *a, vf c)
 }
 
 /* F at c = vh. At most 1 without a clamp: the denominator is no less than the numerator, rounding included. */
-OP vf fitted(const fresnel_fit *fit, vf c) { return fit_polynomial(fit->p, c) / fit_polynomial(fit->q, c); }
+OP vf fitted(const fresnel_fit *fit, vf c) { return vf_div(fit_polynomial(fit->p, c), fit_polynomial(fit->q, c)); }
 
 #endif

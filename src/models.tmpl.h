@@ -1,7 +1,9 @@
 /* The models, once for every architecture and tier: what follows is the mathematics of facet.h's enumerators, over the
  * vector layer that was included before (arch/NAME.h). Each function's formula stands above it, as its source prints
  * it, then as it is evaluated. Names are those of facet.h. What the functions return is the BRDF times nl and times pi,
- * which lights' irradiance is divided by: D, too, is pi times the printed one. */
+ * which lights' irradiance is divided by: D, too, is pi times the printed one.
+ * Diffuse terms, D and fits divide by vf_div, which on NEON keeps them from the divider. Masking, which comes last,
+ * divides by `/`, as do terms that no loop of special.def has. */
 #ifndef FACET_MODELS_TMPL_H
 #define FACET_MODELS_TMPL_H
 
@@ -89,7 +91,7 @@ OP vf3 diffuse_lambert(surface s, incidence i, vf3 plus) { return mad3(s.albedo,
 OP vf3 oren_nayar(surface s, incidence i, vf3 plus)
 {
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
-    vf sin_tan = not_negative(s0) / vf_max(i.nl, i.nv);
+    vf sin_tan = vf_div(not_negative(s0), vf_max(i.nl, i.nv));
     return mad3(s.albedo, same3(i.nl * vf_mad(s.terms.B, sin_tan, s.terms.A)), plus);
 }
 
@@ -98,8 +100,8 @@ OP terms oren_nayar_terms(vf sigma, float fold)
 {
     vf s2 = square(sigma);
     terms t = NO_TERMS;
-    t.A = 1.0f - s2 / (s2 + s2 + 2.0f * fold);
-    t.B = 0.45f * s2 / (s2 + 0.09f);
+    t.A = 1.0f - vf_div(s2, s2 + s2 + 2.0f * fold);
+    t.B = vf_div(0.45f * s2, s2 + 0.09f);
     return t;
 }
 OP terms terms_oren_nayar(vf sigma) { return oren_nayar_terms(sigma, 0.33f); }
@@ -119,11 +121,11 @@ OP vf3 oren_nayar_1994(surface s, incidence i, vf3 plus, bool interreflection)
     vf sin_a = vf_sqrt(not_negative(1.0f - square(cos_a))), sin_b = vf_sqrt(not_negative(1.0f - square(cos_b)));
     vf a = arccos(cos_a) * (2.0f * INV_PI), b = arccos(cos_b) * (2.0f * INV_PI), b2 = square(b);
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
-    vf cos_phi = clamp(s0 / vf_max(splat(TINY), sin_a * sin_b), -1.0f, 1.0f);
+    vf cos_phi = clamp(vf_div(s0, vf_max(splat(TINY), sin_a * sin_b)), -1.0f, 1.0f);
 
     vf opposed = vf_min(cos_phi, splat(0.0f)) * (b * b2) * sin_b;
-    vf C2 = (s0 - opposed) * (i.nl / cos_b);
-    vf C3 = (0.125f / 0.45f) * square(a * b) * (1.0f - vf_abs(cos_phi)) * (i.nl * (sin_a + sin_b) / (i.nl + i.nv));
+    vf C2 = (s0 - opposed) * vf_div(i.nl, cos_b);
+    vf C3 = (0.125f / 0.45f) * square(a * b) * (1.0f - vf_abs(cos_phi)) * vf_div(i.nl * (sin_a + sin_b), i.nl + i.nv);
     vf L1 = vf_mad(s.terms.B, C2 + C3, s.terms.A * i.nl);
     vf L2 = s.terms.C * i.nl * vf_nmad(cos_phi, b2, splat(1.0f));
     if (!interreflection) L2 = splat(0.0f);
@@ -137,7 +139,7 @@ OP terms terms_oren_nayar_full(vf sigma)
 {
     vf s2 = square(sigma);
     terms t = terms_oren_nayar(sigma);
-    t.C = 0.17f * s2 / (s2 + 0.13f);
+    t.C = vf_div(0.17f * s2, s2 + 0.13f);
     return t;
 }
 #define terms_oren_nayar_direct terms_oren_nayar_full
@@ -147,7 +149,7 @@ OP terms terms_oren_nayar_full(vf sigma)
 OP terms terms_fujii(vf r)
 {
     terms t = NO_TERMS;
-    t.A = 1.0f / (1.0f + 0.287793409f * r);
+    t.A = vf_div(splat(1.0f), 1.0f + 0.287793409f * r);
     t.B = r * t.A;
     return t;
 }
@@ -156,7 +158,7 @@ OP vf fujii(surface s, incidence i)
 {
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
     vf t = vf_select(vf_lt(splat(0.0f), s0), vf_max(i.nl, i.nv), splat(1.0f));
-    return i.nl * not_negative(vf_mad(s.terms.B, s0 / t, s.terms.A));
+    return i.nl * not_negative(vf_mad(s.terms.B, vf_div(s0, t), s.terms.A));
 }
 OP vf3 diffuse_fujii(surface s, incidence i, vf3 plus) { return mad3(s.albedo, same3(fujii(s, i)), plus); }
 
@@ -178,9 +180,9 @@ OP vf3 diffuse_eon(surface s, incidence i, vf3 plus)
     vf3 once = diffuse_fujii(s, i, plus), white = clamp3(s.albedo, 0.0f, 1.0f);
     vf more = s.terms.C * i.nl * eon_missing(i.nl) * eon_missing(i.nv);
     vf3 a2 = mul3(white, white);
-    return (vf3){ vf_mad(a2.x, more / vf_nmad(white.x, s.terms.D, splat(1.0f)), once.x),
-                  vf_mad(a2.y, more / vf_nmad(white.y, s.terms.D, splat(1.0f)), once.y),
-                  vf_mad(a2.z, more / vf_nmad(white.z, s.terms.D, splat(1.0f)), once.z) };
+    return (vf3){ vf_mad(a2.x, vf_div(more, vf_nmad(white.x, s.terms.D, splat(1.0f))), once.x),
+                  vf_mad(a2.y, vf_div(more, vf_nmad(white.y, s.terms.D, splat(1.0f))), once.y),
+                  vf_mad(a2.z, vf_div(more, vf_nmad(white.z, s.terms.D, splat(1.0f))), once.z) };
 }
 
 /* C = A r Eavg/(c1 - c2), D = 1 - Eavg. */
@@ -200,7 +202,7 @@ OP vf distribution_none(surface s, incidence i) { (void)s, (void)i; return splat
  * From the vectors, without 1 - nh^2: q = alpha hh/(|n x w|^2 + alpha^2 (n.w)^2), D = q^2/pi. */
 OP vf distribution_ggx(surface s, incidence i)
 {
-    vf q = s.alpha * i.hh / vf_max(splat(TINY), vf_mad(s.alpha2, square(i.nw), i.nxw2));
+    vf q = vf_div(s.alpha * i.hh, vf_max(splat(TINY), vf_mad(s.alpha2, square(i.nw), i.nxw2)));
     return square(q);
 }
 
@@ -215,21 +217,22 @@ OP vf distribution_ggx_anisotropic(surface s, incidence i)
     across w = across_of(s, add3(s.v, i.l));
     vf area = s.alpha * s.alpha_y;
     vf slope = vf_mad(s.alpha_y * w.x, s.alpha_y * w.x, square(s.alpha * w.y));
-    vf q = area * i.hh / vf_max(splat(TINY), vf_mad(area * i.nw, area * i.nw, slope));
+    vf q = vf_div(area * i.hh, vf_max(splat(TINY), vf_mad(area * i.nw, area * i.nw, slope)));
     return area * square(q);
 }
 
-/* exp(-slope)/(pi area nh^4), 1/nh^2 = 1 + tan^2. Where tan^2 > 1e18 the exponential is 0 anyway. */
+/* exp(-slope)/(pi area nh^4), 1/nh^2 = 1 + tan^2. Where tan^2 > 1e18, or has overflowed to infinity or, by vf_div, to
+ * NaN, the exponential is 0 anyway. */
 OP vf beckmann(vf tan2, vf slope, vf area)
 {
-    return exp_minus(slope) * square(1.0f + vf_min(tan2, splat(1e18f))) / area;
+    return vf_div(exp_minus(slope) * square(1.0f + vf_min(tan2, splat(1e18f))), area);
 }
 
 /* Beckmann 1963; Cook and Torrance 1981: D = exp(-tan^2/alpha^2)/(pi alpha^2 nh^4), tan^2 = |n x w|^2/(n.w)^2. */
 OP vf distribution_beckmann(surface s, incidence i)
 {
-    vf tan2 = i.nxw2 / vf_max(splat(TINY), square(i.nw));
-    return beckmann(tan2, tan2 / s.alpha2, s.alpha2);
+    vf tan2 = vf_div(i.nxw2, vf_max(splat(TINY), square(i.nw)));
+    return beckmann(tan2, vf_div(tan2, s.alpha2), s.alpha2);
 }
 
 /* Heitz 2014, eq. 82: ((x.h)^2/ax^2 + (y.h)^2/ay^2)/(n.h)^2 in place of tan^2/alpha^2. */
@@ -237,8 +240,8 @@ OP vf distribution_beckmann_anisotropic(surface s, incidence i)
 {
     across w = across_of(s, add3(s.v, i.l));
     vf nw2 = vf_max(splat(TINY), square(i.nw));
-    vf slope = square(w.x / s.alpha) + square(w.y / s.alpha_y);
-    return beckmann(vf_mad(w.x, w.x, square(w.y)) / nw2, slope / nw2, s.alpha * s.alpha_y);
+    vf slope = square(vf_div(w.x, s.alpha)) + square(vf_div(w.y, s.alpha_y));
+    return beckmann(vf_div(vf_mad(w.x, w.x, square(w.y)), nw2), vf_div(slope, nw2), s.alpha * s.alpha_y);
 }
 
 /* cos^exponent, of tan^2 = sin2/cos2: cos near 1 has lost what exponent ln(cos) needs, tan^2 has not. */

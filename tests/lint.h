@@ -21,6 +21,7 @@ OP void vf_stream(float *p, vf a) { vf_store(p, a); }
 OP void vf_streamed(void) { }
 OP vf vf_splat(float a) { return (vf){ a }; }
 
+OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return (vf){ __builtin_sqrtf(a[0]) }; }
 OP vf vf_min(vf a, vf b) { return (vf){ a[0] < b[0] ? a[0] : b[0] }; }
 OP vf vf_max(vf a, vf b) { return (vf){ a[0] > b[0] ? a[0] : b[0] }; }
