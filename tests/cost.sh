@@ -131,7 +131,7 @@ loops() {
                 text = substr(text, 1, RSTART) "loop"
             }
             code[count] = text
-            divisions[count] = divisions[count - 1] + (text ~ /^(v?div|v?sqrt|fdiv|fsqrt)/)
+            divisions[count] = divisions[count - 1] + (text ~ /^(v?div|v?sqrt|fdiv|fsqrt|frecpe)/)
             stores[count] = stores[count - 1] + store(text)
         }
         END { end_function() }'
