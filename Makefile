@@ -26,7 +26,7 @@ ARCHES.aarch64 := scalar neon
 
 ARCHES ?= $(or $(ARCHES.$(MACHINE)),scalar)
 TIERS  ?= fast strict
-# Words of src/models.def: build these alone. Empty: all.
+# Words of src/models.def, and packed for packed streams: build these alone. Empty: all.
 MODELS ?=
 
 # One short line a file; V=1 shows the commands.

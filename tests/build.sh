@@ -98,8 +98,8 @@ check "the full build holds every model" full
 check "MODELS=lambert holds Lambert alone" filtered lambert lambert
 size=$(stripped_size)
 check "MODELS=lambert is ${size:-unknown} bytes, $limit allowed" [ "${size:-$((limit + 1))}" -le $limit ]
-check "MODELS='lambert ggx smith-correlated schlick' holds these alone" \
-    filtered common lambert ggx smith-correlated schlick
+check "MODELS='lambert ggx smith-correlated schlick packed' holds these alone" \
+    filtered common lambert ggx smith-correlated schlick packed
 check "a copy gives the same bytes and writes nothing into its tree" reproducible
 
 # ---- Install and uninstall -------------------------------------------------------------------------------------------

@@ -1,4 +1,5 @@
-/* filtered [WORD ...]: this build holds the models of these words and refuses the others (no words: it holds all).
+/* filtered [WORD ...]: this build holds the models of these words, and packed streams where "packed" is one, and refuses
+ * the others (no words: it holds all).
  * Prints a line for every material that it shades: the models, and a hash of the strict results. */
 #include "facet.h"
 #include "models.def"                /* the properties of its rows */
@@ -36,12 +37,17 @@ static bool go_together(int masking, int distribution)
     return false;
 }
 
+static bool named(const char *word)
+{
+    bool found = !word_count;
+    for (int i = 0; i < word_count; i++) found |= !strcmp(word, words[i]);
+    return found;
+}
+
 static bool expected(facet_kind kind, int value)
 {
     const char *word = facet_word(kind, value);
-    bool found = !word_count || !strcmp(word, "none");
-    for (int i = 0; i < word_count; i++) found |= !strcmp(word, words[i]);
-    return found;
+    return named(word) || !strcmp(word, "none");
 }
 
 static void complain(const int *value, const char *what)
@@ -110,6 +116,28 @@ static void try_material(const int *value)
     printf("%d %d %d %d %08x\n", value[0], value[1], value[2], value[3], hash);
 }
 
+/* Packed streams are a word of their own; emission needs no model. */
+static void try_packed(void)
+{
+    const facet_target target = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
+    const facet_material material = { .emission = { 0.5f, 0.25f, 0.75f } };
+    static const uint32_t normal[COUNT];
+    static uint16_t half[3][COUNT];
+    const facet_batch batch = {
+        .count = COUNT,
+        .packed = { .normal = (const int16_t *)(const void *)normal, .half = { half[0], half[1], half[2] } },
+    };
+    facet_plan plan;
+    facet_error error;
+    facet_status status = facet_plan_init(&plan, &material, target, NULL);
+    if (!status) status = facet_shade(&plan, &batch, &error);
+    const bool right = named("packed") ? !status && half[0][0] == 0x3800 && half[2][COUNT - 1] == 0x3a00
+                                       : status == FACET_ERROR_MODEL && !strcmp(error.field, "packed") && !half[0][0];
+    if (right) return;
+    printf("packed streams: %s\n", facet_word(FACET_KIND_STATUS, (int)status));
+    failures++;
+}
+
 int main(int count, char **arguments)
 {
     int value[KINDS] = { 0 };
@@ -126,5 +154,6 @@ int main(int count, char **arguments)
         for (value[1] = 0; facet_word(FACET_KIND_DISTRIBUTION, value[1]); value[1]++)
             for (value[2] = 0; facet_word(FACET_KIND_MASKING, value[2]); value[2]++)
                 for (value[3] = 0; facet_word(FACET_KIND_FRESNEL, value[3]); value[3]++) try_material(value);
+    try_packed();
     return failures > 0;
 }
