@@ -318,8 +318,8 @@ enum {
  *   across, down: from a pixel's middle to the next one's to the right, and below.
  *   x, y        the pixel of the batch's first sample.
  *   width       pixels in each of the batch's rows: sample i is pixel (x + i % width, y + i/width); 0: all are in one.
- * Numbers must be finite, columns and rows below 2^20. A ray of 0 counts as a view that is not a number, and one shorter
- * than 1e-18 may; one longer than 1e18 sees 0. */
+ * Numbers must be finite, columns and rows below 2^20. A ray of 0 counts as a view that is not a number, and one
+ * shorter than 1e-18 may; one longer than 1e18 sees 0. */
 typedef struct facet_camera {
     float corner[3], across[3], down[3];
     uint32_t x, y, width;
@@ -337,10 +337,10 @@ typedef struct facet_camera {
  *   pixels            and there as facet_encode has it: sRGB R, G, B, and 255. Both may be given; neither accumulates.
  *   exposure          multiplies the radiance of `pixels`; 0: 1. Finite, >= 0.
  * A build of some models (make MODELS=...) has packed streams where `packed` is among the words, and else refuses them
- * (MODEL). Streams of as many bytes a sample may be one another exactly, never a partial overlap. The error bounds hold against
- * what these formulas give of the packed numbers, but that rounding n and v to floats adds up to 3 2^-24/(alpha vh) of
- * what is specular, where a ray is not much shorter than the three vectors that it is the sum of; rounding to halves
- * or pixels comes on top. */
+ * (MODEL). Streams of as many bytes a sample may be one another exactly, never a partial overlap. The error bounds hold
+ * against what these formulas give of the packed numbers, but that rounding n and v to floats adds up to 3
+ * 2^-24/(alpha vh) of what is specular, where a ray is not much shorter than the three vectors that it is the sum of;
+ * rounding to halves or pixels comes on top. */
 typedef struct facet_packed {
     const int16_t *normal;
     const uint8_t *albedo_roughness, *f0_sigma;

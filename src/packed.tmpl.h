@@ -123,8 +123,8 @@ OP vf pixel_words(vf3 bytes)
 }
 
 /* Those pixels of a vector that are in doubt, exactly. */
-static __attribute__((noinline, cold)) void correct_pixels(float (*radiance)[VF_LANES], float exposure, uint32_t doubtful,
-                                                           uint8_t *pixels)
+static __attribute__((noinline, cold)) void correct_pixels(float (*radiance)[VF_LANES], float exposure,
+                                                           uint32_t doubtful, uint8_t *pixels)
 {
     for (; doubtful; doubtful &= doubtful - 1) {
         const int lane = __builtin_ctz(doubtful);

@@ -531,8 +531,9 @@ static __attribute__((noinline)) void place_values(job *j, block_values values)
     }
 }
 
-/* Batches of so many samples do not fit into the caches that a core has to itself, nor does their radiance: it goes past
- * them, in place of reading it first. 1.28 with AVX-512 from memory. */
+/* Batches of so many samples do not fit into the caches that a core has to itself, nor does their radiance: it goes
+ * past them, in place of reading it first. From memory 1.3 with AVX-512, 1.2 with AVX2, whose streams, where they stand
+ * a multiple of 4096 bytes apart, lose .88. */
 #define STREAMED ((size_t)1 << 19)
 
 /* How many samples are left to the next multiple of a vector's size in all three of a large batch's radiance streams;

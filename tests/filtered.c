@@ -1,5 +1,5 @@
-/* filtered [WORD ...]: this build holds the models of these words, and packed streams where "packed" is one, and refuses
- * the others (no words: it holds all).
+/* filtered [WORD ...]: this build holds the models of these words, and packed streams where "packed" is one, and
+ * refuses the others (no words: it holds all).
  * Prints a line for every material that it shades: the models, and a hash of the strict results. */
 #include "facet.h"
 #include "models.def"                /* the properties of its rows */
