@@ -128,7 +128,7 @@ static void draw_lights(test_random *r, mix *m)
         { .direction = { -0.8f, 0, 0.6f }, .irradiance = { 1, 40, 900 } },
     };
     memcpy(m->lights, kinds, sizeof kinds);
-    m->common.light_count = one_in(r, 3) ? below(r, 1 + MOST_PACKED_LIGHTS) : 1;
+    m->common.light_count = one_in(r, 3) ? (size_t)below(r, 1 + MOST_PACKED_LIGHTS) : 1;
     if (one_in(r, 2)) return;
     for (int c = 0; c < 3; c++) {
         m->common.ambient[c] = (float)random_unit(r);
@@ -144,7 +144,7 @@ void draw_mix(test_random *r, mix *m, facet_target target)
     while (!facet_has(FACET_KIND_DIFFUSE, (int)m->set->models.diffuse.model)
            || !facet_has(FACET_KIND_DISTRIBUTION, (int)m->set->models.specular.model)
            || !facet_has(FACET_KIND_FRESNEL, (int)m->set->models.fresnel.model));
-    m->count = size == 0 ? below(r, MOST + 1) : below(r, 201);
+    m->count = size == 0 ? (size_t)below(r, MOST + 1) : (size_t)below(r, 201);
     m->promised = m->set->reads & (one_in(r, 3) ? ~0u : (uint32_t)random_u64(r));
     m->packed = one_in(r, 3) ? ~0u : 0;
     if (one_in(r, 2)) m->packed ^= FACET_STREAM_NORMAL;
