@@ -17,7 +17,7 @@ typedef struct { __mmask16 m; } vm;
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = a; }
-OP void vf_store_half(uint16_t *p, vf a) { _mm256_storeu_si256((__m256i_u *)p, _mm512_cvtps_ph(a, 0)); }
+OP void vf_store_half(uint16_t *p, vf a) { _mm256_storeu_si256((__m256i_u *)p, _mm512_maskz_cvtps_ph(0xffff, a, 0)); }
 OP void vf_stream(float *p, vf a) { _mm512_stream_ps(p, a); }
 OP void vf_streamed(void) { _mm_sfence(); }
 OP vf vf_splat(float a) { return _mm512_set1_ps(a); }
