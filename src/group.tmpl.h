@@ -60,24 +60,26 @@ OP vf load(const group *g, bool dense, int component, int k)
     return vf_load(g->component[component] + at + k * VF_LANES);
 }
 
-/* A value in its domain; a NaN stays one, and infinity where there is no upper end. */
-OP vf in_domain(vf a, float low, float high)
+/* A value in its domain; a NaN stays one, and infinity where there is no upper end. BOUNDED(high): whether there is one,
+ * a constant at every level of optimisation. */
+OP vf in_domain(vf a, float low, float high, bool bounded)
 {
-    if (!(__builtin_constant_p(low) && low == -FLT_MAX)) a = vf_max(splat(low), a);
-    if (!(__builtin_constant_p(high) && high == FLT_MAX)) a = vf_min(splat(high), a);
+    if (low > -FLT_MAX) a = vf_max(splat(low), a);
+    if (bounded) a = vf_min(splat(high), a);
     return a;
 }
+#define BOUNDED(high) (!(__builtin_constant_p(high) && (high) == FLT_MAX))
 
 /* load_ID: vector k of a stream; what is not read is 0. */
 #define VALUE_1 vf
 #define VALUE_3 vf3
 #define NOTHING_1 splat(0.0f)
 #define NOTHING_3 ZERO3
-#define LOADED_1(id, low, high) in_domain(load(g, x.dense, COMPONENT_##id, k), low, high)
+#define COMPONENT(which, low, high) in_domain(load(g, x.dense, which, k), low, high, BOUNDED(high))
+#define LOADED_1(id, low, high) COMPONENT(COMPONENT_##id, low, high)
 #define LOADED_3(id, low, high)                                                                                       \
-    (vf3){ in_domain(load(g, x.dense, COMPONENT_##id, k), low, high),                                                 \
-           in_domain(load(g, x.dense, COMPONENT_##id + 1, k), low, high),                                             \
-           in_domain(load(g, x.dense, COMPONENT_##id + 2, k), low, high) }
+    (vf3){ COMPONENT(COMPONENT_##id, low, high), COMPONENT(COMPONENT_##id + 1, low, high),                            \
+           COMPONENT(COMPONENT_##id + 2, low, high) }
 #define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
     OP VALUE_##components load_##id(const group *g, features x, int k)                                                \
     {                                                                                                                 \

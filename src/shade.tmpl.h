@@ -366,7 +366,7 @@ OP vf source(const job *j, const block *b, int component, size_t at, float low, 
         pad(from, b->count - at, padded);
         from = padded;
     }
-    vf a = in_domain(vf_load(from), low, high);
+    vf a = in_domain(vf_load(from), low, high, high < FLT_MAX);
     return a + (a - a);
 }
 
