@@ -28,15 +28,6 @@ OP void vf_streamed(void) { }
 
 OP vf vf_splat(float a) { return a; }
 
-/* IEEE 754 binary16 of 0 <= a <= 65504, to nearest, ties to even; addresses have a uint16_t's alignment. */
-OP void vf_store_half(uint16_t *p, vf a)
-{
-    const uint32_t bits = ((union { float f; uint32_t u; }){ .f = a }).u, odd = bits >> 13 & 1;
-    const float sum = a + 0.5f;     /* below 2^-14: the sum's last place is that of the least half */
-    const uint32_t small = ((union { float f; uint32_t u; }){ .f = sum }).u - 0x3f000000;
-    *p = (uint16_t)(a < 0x1p-14f ? small : (bits - 0x38000000 + 0xfff + odd) >> 13);
-}
-
 /* a / b; in the fast tier it may be near that. Where b is a normal float and |a/b| < 2^127: within 0.51 units in the
  * last place plus 2^-149/|b|; 0 for a = 0, 1 for 1/1, at most 1 for |a| <= |b|. NaN of a NaN; elsewhere anything. */
 OP vf vf_div(vf a, vf b) { return a / b; }
@@ -69,6 +60,14 @@ OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
 OP vf vf_shift_left(vf a, int n) { return from_bits(bits_of(a) << n); }
 OP vf vf_shift_right(vf a, int n) { return from_bits(bits_of(a) >> n); }
 OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
+
+/* IEEE 754 binary16 of 0 <= a <= 65504, to nearest, ties to even; addresses have a uint16_t's alignment. Below 2^-14
+ * the last place of a + 1/2 is that of the least half. */
+OP void vf_store_half(uint16_t *p, vf a)
+{
+    const uint32_t bits = bits_of(a), odd = bits >> 13 & 1, small = bits_of(a + 0.5f) - 0x3f000000;
+    *p = (uint16_t)(a < 0x1p-14f ? small : (bits - 0x38000000 + 0xfff + odd) >> 13);
+}
 
 OP vm vf_lt(vf a, vf b) { return (vm){ a < b }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ a == b }; }

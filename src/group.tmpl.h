@@ -60,8 +60,8 @@ OP vf load(const group *g, bool dense, int component, int k)
     return vf_load(g->component[component] + at + k * VF_LANES);
 }
 
-/* A value in its domain; a NaN stays one, and infinity where there is no upper end. BOUNDED(high): whether there is one,
- * a constant at every level of optimisation. */
+/* A value in its domain; a NaN stays one, and infinity where there is no upper end. BOUNDED(high): whether there is
+ * one, a constant at every level of optimisation. */
 OP vf in_domain(vf a, float low, float high, bool bounded)
 {
     if (low > -FLT_MAX) a = vf_max(splat(low), a);
@@ -144,10 +144,10 @@ OP void prepare(group *g, features x)
 
 /* ---- One light -------------------------------------------------------------------------------------------------- */
 
-/* The end of a stream of words, with zeros behind it. Rare: out of the way. */
-static __attribute__((noinline, cold)) void pad(const float *stream, size_t left, float *padded)
+/* The end of a stream of words, from the i-th on, with zeros behind it. Rare: out of the way. */
+static __attribute__((noinline, cold)) void pad(const void *stream, size_t i, size_t left, float *padded)
 {
-    const bits32 *from = (const bits32 *)stream;
+    const bits32 *from = (const bits32 *)stream + i;
     for (size_t lane = 0; lane < GROUP; lane++) ((bits32 *)padded)[lane] = lane < left ? from[lane] : 0;
 }
 
@@ -157,7 +157,7 @@ OP void load_light(features x, const job *j, const float *stream, size_t i, vf *
     const float *from = stream + i;
     float padded[GROUP];
     if (j->count - i < (size_t)x.vectors * VF_LANES) {
-        pad(from, j->count - i, padded);
+        pad(stream, i, j->count - i, padded);
         from = padded;
     }
     EACH(k) {

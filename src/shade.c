@@ -170,6 +170,8 @@ static facet_status check_camera(const facet_camera *camera, size_t count, facet
     return FACET_OK;
 }
 
+static bool gives_halves(const facet_packed *p) { return p->half[0] || p->half[1] || p->half[2]; }
+
 static facet_status check_words(const void *packed, const char *field, facet_error *error)
 {
     return (uintptr_t)packed % sizeof(bits32) ? refuse(error, FACET_ERROR_VALUE, field, -1) : FACET_OK;
@@ -178,14 +180,13 @@ static facet_status check_words(const void *packed, const char *field, facet_err
 static __attribute__((noinline, cold)) facet_status check_packed(const job *j, facet_error *error)
 {
     const facet_packed *p = j->packed;
-    const bool halves = p->half[0] || p->half[1] || p->half[2];
     facet_status status = check_words(p->normal, "packed.normal", error);
     if (!status) status = check_words(p->albedo_roughness, "packed.albedo_roughness", error);
     if (!status) status = check_words(p->f0_sigma, "packed.f0_sigma", error);
     if (!status) status = check_words(p->pixels, "packed.pixels", error);
     if (!status && p->camera) status = check_camera(p->camera, j->count, error);
     if (status || !j->packs) return status;
-    for (int c = 0; c < 3 && halves; c++)
+    for (int c = 0; c < 3 && gives_halves(p); c++)
         if (!p->half[c]) return refuse(error, FACET_ERROR_NULL, "packed.half", c);
     if (!(p->exposure >= 0.0f && finite(p->exposure))) return refuse(error, FACET_ERROR_VALUE, "packed.exposure", -1);
     if (j->flags & FACET_ACCUMULATE) return refuse(error, FACET_ERROR_ENUM, "flags", -1);
@@ -251,7 +252,7 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, const 
     j.count = b->count;
     j.flags = b->flags;
     j.packed = &b->packed;
-    j.packs = b->packed.half[0] || b->packed.half[1] || b->packed.half[2] || b->packed.pixels;
+    j.packs = gives_halves(&b->packed) || b->packed.pixels;
     facet_status status = check_batch(&j, b, error);
     if (status) return status;
 

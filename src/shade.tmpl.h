@@ -363,7 +363,7 @@ OP vf source(const job *j, const block *b, int component, size_t at, float low, 
     const float *from = values_at(j, component, b->i + at);
     float padded[GROUP];
     if (b->count - at < VF_LANES) {
-        pad(from, b->count - at, padded);
+        pad(from, 0, b->count - at, padded);
         from = padded;
     }
     vf a = in_domain(vf_load(from), low, high, high < FLT_MAX);
@@ -441,9 +441,9 @@ static void unpack(const job *j, const block *b, block_values values)
     end.albedo_roughness = (const uint8_t *)words[1];
     end.f0_sigma = (const uint8_t *)words[2];
     end.camera = p->camera;
-    if (p->normal) pad((const float *)(const void *)p->normal + i, left, words[0]);
-    if (p->albedo_roughness) pad((const float *)(const void *)p->albedo_roughness + i, left, words[1]);
-    if (p->f0_sigma) pad((const float *)(const void *)p->f0_sigma + i, left, words[2]);
+    if (p->normal) pad(p->normal, i, left, words[0]);
+    if (p->albedo_roughness) pad(p->albedo_roughness, i, left, words[1]);
+    if (p->f0_sigma) pad(p->f0_sigma, i, left, words[2]);
     unpack_some(j, &end, 0, i, values, whole, VF_LANES);
 }
 

@@ -76,7 +76,7 @@ cross_jobs() {
     bytes="ops elementary fits api encode conversions metals stability agreement packed golden environment"
     job emulated armv7   arm-linux-gnueabihf qemu-arm     "gcc-arm-linux-gnueabihf libc6-dev-armhf-cross" $bytes
     job emulated s390x   s390x-linux-gnu     qemu-s390x   "gcc-s390x-linux-gnu libc6-dev-s390x-cross" $bytes
-    job emulated riscv64 riscv64-linux-gnu   qemu-riscv64 "gcc-riscv64-linux-gnu libc6-dev-riscv64-cross" $bytes stability
+    job emulated riscv64 riscv64-linux-gnu   qemu-riscv64 "gcc-riscv64-linux-gnu libc6-dev-riscv64-cross" $bytes
 
     # Each compiler has every architecture once, each level a gcc and a clang; what else there is, is built by gcc-12 at
     # -O3.
