@@ -5,7 +5,7 @@
 #include <immintrin.h>
 #include <stdint.h>
 
-#define OP static inline __attribute__((always_inline, unused))
+#include "op.h"
 
 typedef __m256 vf;
 typedef float vf_memory __attribute__((vector_size(32), aligned(4), may_alias));

@@ -5,7 +5,7 @@
 #include <arm_neon.h>
 #include <stdint.h>
 
-#define OP static inline __attribute__((always_inline, unused))
+#include "op.h"
 
 typedef float32x4_t vf;
 typedef float vf_memory __attribute__((vector_size(16), aligned(4), may_alias));

@@ -9,7 +9,7 @@
 
 #include <stdint.h>
 
-#define OP static inline __attribute__((always_inline, unused))
+#include "op.h"
 
 typedef float vf;
 typedef float __attribute__((may_alias)) vf_memory;

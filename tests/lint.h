@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-#define OP static inline __attribute__((always_inline, unused))
+#include "../arch/op.h"
 
 typedef float vf __attribute__((vector_size(4)));
 typedef int32_t lanes_of_bits __attribute__((vector_size(4)));
