@@ -265,11 +265,13 @@ OP const float *values_at(const job *j, int c, size_t i)
 static __attribute__((noinline)) void mend_component(const job *j, const block *b, int c, size_t at, float low,
                                                      float high, float *values, vf *is_finite)
 {
-    const size_t count = b->count - at < GROUP ? b->count - at : GROUP;
     const float *from = values_at(j, c, b->i + at);
-    for (size_t lane = 0; lane < GROUP; lane++) values[lane] = lane < count ? from[lane] : 0.0f;
+    if (b->count - at < GROUP) {
+        pad(from, 0, b->count - at, values);
+        from = values;
+    }
     EVERY(k) {
-        vf a = vf_load(values + k * VF_LANES);
+        vf a = vf_load(from + k * VF_LANES);
         vf inside = low > -FLT_MAX ? vf_max(splat(low), a) : a;
         if (high < FLT_MAX) inside = vf_min(splat(high), inside);
         is_finite[k] = is_finite[k] + (inside - inside);
