@@ -34,8 +34,8 @@ typedef uint32_t __attribute__((may_alias)) bits32;
 
 /* The rows of models.def by name. */
 enum {
-#define FACET_DIFFUSE(id, name, word, reads, ...)                                                                     \
-    DIFFUSE_##name = FACET_DIFFUSE_##id, DIFFUSE_READS_##name = reads,
+#define FACET_DIFFUSE(id, name, word, reads, properties, ...)                                                         \
+    DIFFUSE_##name = FACET_DIFFUSE_##id, DIFFUSE_READS_##name = reads, VIEWED_##name = (properties) & VIEWED,
 #define FACET_DISTRIBUTION(id, name, word, reads, ...)                                                                \
     DISTRIBUTION_##name = FACET_DISTRIBUTION_##id, DISTRIBUTION_READS_##name = reads,
 #define FACET_MASKING(id, name, ...) MASKING_##name = FACET_MASKING_##id,

@@ -175,20 +175,23 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
 /* The rows of special.def: the same body with constants, for any batch, for plain ones, and for those of one light and
  * nothing else. */
 #define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
-    OP features features_##name(bool sigma_given)                                                                     \
+    OP features features_##name(bool sigma_given, uint32_t given)                                                     \
     {                                                                                                                 \
         return (features){ .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                              \
                            .distribution = (facet_distribution)DISTRIBUTION_##distribution_,                          \
                            .visibility = (enum visibility)VISIBILITY_##masking##_##distribution_,                     \
                            .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                              \
                            .fits = FITS_##fresnel_,                                                                   \
-                           .streams = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | DIFFUSE_READS_##diffuse_              \
-                                    | DISTRIBUTION_READS_##distribution_ | FRESNEL_READS_##fresnel_,                  \
+                           .streams = FACET_STREAM_NORMAL                                                             \
+                                    | (VIEWED_##diffuse_ || DISTRIBUTION_##distribution_                              \
+                                           ? (uint32_t)FACET_STREAM_VIEW : given & FACET_STREAM_VIEW)                 \
+                                    | DIFFUSE_READS_##diffuse_ | DISTRIBUTION_READS_##distribution_                   \
+                                    | FRESNEL_READS_##fresnel_,                                                       \
                            .coupled = coupled_, .sigma_given = sigma_given, .vectors = 1 };                           \
     }                                                                                                                 \
     static __attribute__((noinline)) size_t shade_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
     {                                                                                                                 \
-        features x = features_##name(j->given & FACET_STREAM_SIGMA);                                                  \
+        features x = features_##name(j->given & FACET_STREAM_SIGMA, j->given);                                        \
         x.streams |= streams_read(j);                                                                                 \
         x.scaled = j->plan->scale != 1.0f;                                                                            \
         x.two_sided = j->flags & FACET_TWO_SIDED;                                                                     \
@@ -196,7 +199,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
     }                                                                                                                 \
     static __attribute__((noinline)) size_t lights_##name(const job *j, const block *b, size_t at, invalids *invalid) \
     {                                                                                                                 \
-        features x = features_##name(j->given & FACET_STREAM_SIGMA);                                                  \
+        features x = features_##name(j->given & FACET_STREAM_SIGMA, j->given);                                        \
         x.plain = true;                                                                                               \
         x.shows = !j->has_ambient && !j->has_emission;                                                                \
         return shade_block(j, x, b, at, invalid);                                                                     \
@@ -204,7 +207,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
     static __attribute__((noinline)) size_t plain_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
     {                                                                                                                 \
         const bool reads_sigma = DIFFUSE_READS_##diffuse_ & FACET_STREAM_SIGMA;                                       \
-        features x = features_##name(reads_sigma);                                                                    \
+        features x = features_##name(reads_sigma, j->given);                                                          \
         (void)invalid;                                                                                                \
         x.plain = x.shows = x.dense = true;                                                                           \
         if (j->dense) return shade_plain(j, x, b, at);                                                                \
@@ -231,7 +234,6 @@ OP choice choose_shader(const job *j)
                               && p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f)
                               && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
     const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !j->has_emission;
-    if (!(j->streams & FACET_STREAM_VIEW)) return (choice){ shade_any, false };
     switch (p->special) {
 #define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
     case SPECIAL_##name:                                                                                              \
@@ -330,16 +332,17 @@ static __attribute__((noinline)) size_t shade_mended(const job *j, const block *
     for (int c = 0; c < COMPONENT_COUNT; c++) component[c] = values[c];
     m.component = component;
     m.mask = first;
-    for (int c = 0; c < 3; c++) {
-        m.radiance[c] = result[c];
+    for (int c = 0; c < 3; c++) m.radiance[c] = result[c];
+    if (j->flags & FACET_ACCUMULATE)
         for (size_t lane = 0; lane < GROUP; lane++)
-            result[c][lane] = j->flags & FACET_ACCUMULATE && covered >> lane & 1 ? b->radiance[c][at + lane] : 0.0f;
-    }
+            for (int c = 0; c < 3; c++) result[c][lane] = covered >> lane & 1 ? b->radiance[c][at + lane] : 0.0f;
     shade_any(j, &m, 0, &more);
     invalid |= more.last;
-    for (int c = 0; c < 3; c++)
-        for (size_t lane = 0; lane < GROUP; lane++)
-            if (covered >> lane & 1) b->radiance[c][at + lane] = invalid >> lane & 1 ? 0.0f : result[c][lane];
+    for (uint32_t lanes = covered; lanes; lanes &= lanes - 1) {
+        const int lane = __builtin_ctz(lanes);
+        const bool valid = !(invalid >> lane & 1);
+        for (int c = 0; c < 3; c++) b->radiance[c][at + (size_t)lane] = valid ? result[c][lane] : 0.0f;
+    }
     size_t count = 0;
     for (invalid &= covered; invalid; invalid &= invalid - 1) count++;
     return count;
