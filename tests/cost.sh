@@ -86,22 +86,28 @@ instructions() {
 # ---- Cycles: the loop over whole groups, every stream per sample, by itself ------------------------------------------
 
 # From objdump's text on stdin, to DIR/NAME.s for each plain_NAME: the shortest backward jump's span in which something
-# is divided and results are stored, a vector of each channel. Prints "NAME VECTORS INSTRUCTIONS", 0 0 where none is.
+# is divided, or at least multiplied, and results are stored, a vector of each channel. Prints "NAME VECTORS INSTRUCTIONS", 0 0 where none is.
 loops() {
     awk -F'\t' -v dir="$1" '
         function store(text) {
             return text ~ /^v?movups +%[xyz]mm[0-9]+,.*\)$/ && text !~ /\(%rsp/ || text ~ /^str +q/ && text !~ /\[sp/
         }
-        function end_function(  i, j, n, from, least) {
+        # Sets where it begins; returns its length.
+        function shortest(work,  i, j, n, least) {
             least = 0
             for (i = 1; i <= count; i++) {
                 j = to[i] in place ? place[to[i]] : count
                 n = i - j + 1
-                if (j >= i || divisions[i] == divisions[j - 1] || stores[i] - stores[j - 1] < 3) continue
+                if (j >= i || work[i] == work[j - 1] || stores[i] - stores[j - 1] < 3) continue
                 if (least && least <= n) continue
                 from = j
                 least = n
             }
+            return least
+        }
+        function end_function(  i, least) {
+            least = shortest(divisions)
+            if (!least) least = shortest(products)
             if (name) print name, least ? (stores[from + least - 1] - stores[from - 1]) / 3 : 0, least
             if (least) print "loop:" >(dir "/" name ".s")
             for (i = from; i < from + least; i++) print code[i] >(dir "/" name ".s")
@@ -132,6 +138,7 @@ loops() {
             }
             code[count] = text
             divisions[count] = divisions[count - 1] + (text ~ /^(v?div|v?sqrt|fdiv|fsqrt|frecpe)/)
+            products[count] = products[count - 1] + (text ~ /^(v?mul|fmul)/)
             stores[count] = stores[count - 1] + store(text)
         }
         END { end_function() }'
@@ -168,7 +175,7 @@ loops_of() {
     "$1" -d --no-show-raw-insn "$2" >"$dir/all"
     loops "$dir" <"$dir/all" >"$dir/found"
     [ -s "$dir/found" ]
-    none "no loop with stores and divisions" "$(awk '$2 != int($2) || !$2 { print $1 }' "$dir/found")"
+    none "no loop with stores and products" "$(awk '$2 != int($2) || !$2 { print $1 }' "$dir/found")"
     set -- "$3" "$4" $(mca_of "$3")
     arch=$1 tier=$2 lanes=$3 triple=$4
     shift 4
