@@ -190,7 +190,7 @@ static __attribute__((noinline)) size_t describe(const plan_fields *p, char *tex
 size_t facet_plan_describe(const facet_plan *plan, char *text, size_t size)
 {
     const plan_fields *p = (const plan_fields *)plan;
-    if (!p || !plan_valid(p)) return 0;
+    if (!p || !plan_kernel(p)) return 0;
     environment callers = environment_enter();
     size_t length = describe(p, text, size);
     environment_leave(callers);

@@ -124,6 +124,7 @@ typedef struct __attribute__((may_alias)) plan_fields {
             uint8_t fresnel_properties;
             uint8_t fits;                /* 0: the exact term is evaluated; 1: the three of `fit` are equal; 3 */
             uint8_t special;             /* SPECIAL_NAME: the row of special.def */
+            uint8_t unscaled;            /* scale and f90 are 1, as that row has them for plain batches */
         };
     };
     uint32_t promised;                   /* FACET_STREAM_*: by the material */
@@ -161,8 +162,9 @@ enum {
 /* One call of a kernel. */
 typedef struct job {
     const plan_fields *plan;
-    const float *component[COMPONENT_COUNT];   /* of a stream that is read, or its one value; else the kernel's */
-    size_t mask[COMPONENT_COUNT];        /* sample i stands at i & mask; the kernel's, of batches that are not dense */
+    const float *const *component;       /* of a stream that is read, or its one value: the batch's, or `own` */
+    const float *own[COMPONENT_COUNT];
+    size_t mask[COMPONENT_COUNT];        /* sample i stands at i & mask; the kernel's, beside `own` */
     bool dense;                          /* every stream has a value per sample, none is derived or packed */
     uint32_t streams;                    /* FACET_STREAM_*: are read: from the batch or, if uniform, from the plan */
     uint32_t uniform;                    /* of these, have one value */
@@ -196,10 +198,11 @@ static inline uint32_t plan_sum(const plan_fields *p)
          + p->sources * 0xfd7046c5u;
 }
 
-/* Whether these bytes are a plan of this library, as facet_plan_init made it, for a kernel that it has. */
-static inline bool plan_valid(const plan_fields *p)
+/* The plan's kernel; NULL where these bytes are no plan of this library, as facet_plan_init made it, or its kernel is
+ * not here. */
+static inline kernel *plan_kernel(const plan_fields *p)
 {
-    return p->sum == plan_sum(p) && facet_kernel((facet_arch)p->arch, (facet_tier)p->tier);
+    return p->sum == plan_sum(p) ? facet_kernel((facet_arch)p->arch, (facet_tier)p->tier) : 0;
 }
 
 static inline facet_status refuse(facet_error *error, facet_status code, const char *field, int index)

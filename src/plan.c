@@ -377,6 +377,7 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
     forget_numbers(p);
     fit_fresnel(p);
     p->special = find_special(p);
+    p->unscaled = p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f);
     p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
     store3(p->emission, not_negative3(splat3(m->emission)));
     p->sum = plan_sum(p);
@@ -409,6 +410,6 @@ facet_status facet_plan_init_sized(facet_plan *plan, size_t plan_size, const fac
 facet_target facet_plan_target(const facet_plan *opaque)
 {
     const plan_fields *p = (const plan_fields *)opaque;
-    if (!p || !plan_valid(p)) return (facet_target){ 0 };
+    if (!p || !plan_kernel(p)) return (facet_target){ 0 };
     return (facet_target){ .arch = (facet_arch)p->arch, .tier = (facet_tier)p->tier };
 }

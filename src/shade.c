@@ -3,6 +3,14 @@
 
 #include "../arch/environment.h"
 
+/* By their bits: fewer instructions than floats' comparisons. */
+static bool all_zero(const float *a, int count)
+{
+    bits32 any = 0;
+    for (int i = 0; i < count; i++) any |= ((const bits32 *)a)[i];
+    return any << 1 == 0;
+}
+
 static facet_status check_vector(const float *a, const char *field, int index, facet_error *error)
 {
     const float sum = (a[0] - a[0]) + (a[1] - a[1]) + (a[2] - a[2]);
@@ -12,11 +20,15 @@ static facet_status check_vector(const float *a, const char *field, int index, f
 /* A light's uniform vector: finite and not zero. */
 static facet_status check_light_vector(const float *a, const char *field, int index, facet_error *error)
 {
-    if (a[0] == 0.0f && a[1] == 0.0f && a[2] == 0.0f) return refuse(error, FACET_ERROR_VALUE, field, index);
+    if (all_zero(a, 3)) return refuse(error, FACET_ERROR_VALUE, field, index);
     return check_vector(a, field, index, error);
 }
 
-static bool none_given(const float *const *stream) { return !stream[0] && !stream[1] && !stream[2]; }
+/* Without a branch for each. */
+static bool none_given(const float *const *stream)
+{
+    return !((uintptr_t)stream[0] | (uintptr_t)stream[1] | (uintptr_t)stream[2]);
+}
 
 static facet_status check_stream(const float *const *stream, int components, const char *field, int index,
                                  facet_error *error)
@@ -86,14 +98,6 @@ static facet_status check_lights(job *j, const facet_batch *b, facet_error *erro
 #define SH_0 0.282094792f
 #define SH_1 0.325735008f
 
-/* By their bits: fewer instructions than floats' comparisons. */
-static bool all_zero(const float *a, int count)
-{
-    bits32 any = 0;
-    for (int i = 0; i < count; i++) any |= ((const bits32 *)a)[i];
-    return any << 1 == 0;
-}
-
 static facet_status take_sh(job *j, const facet_batch *b, facet_error *error)
 {
     j->has_sh = !all_zero(b->sh[0], 12);
@@ -108,6 +112,8 @@ static facet_status take_sh(job *j, const facet_batch *b, facet_error *error)
 
 static facet_status take_ambient(job *j, const facet_batch *b, facet_error *error)
 {
+    j->has_ambient = false;
+    if (all_zero(b->ambient, 3) && all_zero(b->sh[0], 12)) return FACET_OK;
     facet_status status = check_vector(b->ambient, "ambient", -1, error);
     if (!status) status = take_sh(j, b, error);
     if (status) return status;
@@ -117,28 +123,28 @@ static facet_status take_ambient(job *j, const facet_batch *b, facet_error *erro
     return FACET_OK;
 }
 
-/* Takes a stream of one component, of three, from the batch. False where a pointer is missing. */
-static inline bool take_1(const float **component, const float *given)
-{
-    component[0] = given;
-    return given;
-}
-static inline bool take_3(const float **component, const float *const *given)
-{
-    component[0] = given[0], component[1] = given[1], component[2] = given[2];
-    return given[0] && given[1] && given[2];
-}
+/* A batch's streams stand one after the other, as job.component wants them. */
+#define FIRST_STREAM offsetof(facet_batch, normal)
+#define FACET_STREAM(id, field, ...)                                                                                  \
+    _Static_assert(offsetof(facet_batch, field) == FIRST_STREAM + COMPONENT_##id * sizeof(float *), #field);
+#include "streams.def"
 
-/* Points to the material's numbers. */
+/* Whether a stream of one component, of three, is there. */
+static inline bool whole_1(const float *given) { return given; }
+static inline bool whole_3(const float *const *given) { return given[0] && given[1] && given[2]; }
+
+/* The batch's streams, and the material's numbers in the place of those that it does not promise. */
 static void take_numbers(job *j, uint32_t numbers)
 {
     const plan_fields *p = j->plan;
+    for (int c = 0; c < COMPONENT_COUNT; c++) j->own[c] = j->component[c];
+    j->component = j->own;
 #define NUMBERS_1(field) &p->field
 #define NUMBERS_3(field) p->field
 #define NUMBER_GEOMETRY(id, field, components)
 #define NUMBER_MATERIAL(id, field, components)                                                                        \
     for (int c = 0; c < components && numbers & FACET_STREAM_##id; c++)                                               \
-        j->component[COMPONENT_##id + c] = (NUMBERS_##components(field)) + c;
+        j->own[COMPONENT_##id + c] = (NUMBERS_##components(field)) + c;
 #define NUMBER_SOURCE NUMBER_MATERIAL
 #define FACET_STREAM(id, field, components, owner, ...) NUMBER_##owner(id, field, components)
 #include "streams.def"
@@ -170,7 +176,15 @@ static facet_status check_camera(const facet_camera *camera, size_t count, facet
     return FACET_OK;
 }
 
-static bool gives_halves(const facet_packed *p) { return p->half[0] || p->half[1] || p->half[2]; }
+static bool takes_packed(const facet_packed *p)
+{
+    return (uintptr_t)p->normal | (uintptr_t)p->camera | (uintptr_t)p->albedo_roughness | (uintptr_t)p->f0_sigma;
+}
+
+static bool gives_halves(const facet_packed *p)
+{
+    return (uintptr_t)p->half[0] | (uintptr_t)p->half[1] | (uintptr_t)p->half[2];
+}
 
 static facet_status check_words(const void *packed, const char *field, facet_error *error)
 {
@@ -211,14 +225,15 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
     const plan_fields *p = j->plan;
     j->streams |= FACET_STREAM_NORMAL | ((p->needed | p->sources) & ~p->derived);
     if (b->flags & FACET_TWO_SIDED || !none_given(b->view)) j->streams |= FACET_STREAM_VIEW;
-    j->unpacked = packed_streams(j->packed, p->promised);
+    j->unpacked = takes_packed(j->packed) ? packed_streams(j->packed, p->promised) : 0;
     j->streams |= j->unpacked & FACET_STREAM_VIEW;
     const uint32_t taken = j->streams | p->promised, numbers = taken & NUMBERED & ~p->promised;
     const uint32_t given = taken & ~(numbers | j->unpacked);
 #define FACET_STREAM(id, field, components, ...)                                                                      \
-    if (given & FACET_STREAM_##id && !take_##components(&j->component[COMPONENT_##id], b->field))                     \
+    if (given & FACET_STREAM_##id && !whole_##components(b->field))                                                   \
         return refuse(error, FACET_ERROR_NULL, #field, -1);
 #include "streams.def"
+    j->component = (const float *const *)(const void *)((const char *)b + FIRST_STREAM);
     if (numbers) take_numbers(j, numbers);
     j->uniform = ((b->uniform & ~j->unpacked) | numbers) & j->streams;
     j->given = (given | j->unpacked) & j->streams;
@@ -234,8 +249,7 @@ static facet_status check_batch(job *j, const facet_batch *b, facet_error *error
     facet_status status = check_lights(j, b, error);
     if (!status) status = take_ambient(j, b, error);
     if (!status) status = gather_streams(j, b, error);
-    const facet_packed *p = j->packed;
-    if (!status && (p->normal || p->albedo_roughness || p->f0_sigma || p->camera || j->packs))
+    if (!status && (takes_packed(j->packed) || j->packs))
         status = FACET_HAS(packed) ? check_packed(j, error) : refuse(error, FACET_ERROR_MODEL, "packed", -1);
     for (int c = 0; c < 3 && !status && !j->packs; c++)
         if (!b->radiance[c]) status = refuse(error, FACET_ERROR_NULL, "radiance", c);
@@ -243,7 +257,8 @@ static facet_status check_batch(job *j, const facet_batch *b, facet_error *error
 }
 
 /* Not inlined: its arithmetic stays between environment_enter and environment_leave. */
-static __attribute__((noinline)) facet_status shade(const plan_fields *p, const facet_batch *b, facet_error *error)
+static __attribute__((noinline)) facet_status shade(const plan_fields *p, kernel *run, const facet_batch *b,
+                                                    facet_error *error)
 {
     job j;
     j.plan = p;
@@ -260,9 +275,9 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, const 
     j.light_count = b->light_count;
     j.coverage = b->coverage;
     j.invalid = b->invalid;
-    j.has_emission = p->emission[0] > 0.0f || p->emission[1] > 0.0f || p->emission[2] > 0.0f;
+    j.has_emission = !all_zero(p->emission, 3);
     for (int c = 0; c < 3; c++) j.radiance[c] = b->radiance[c];
-    facet_kernel((facet_arch)p->arch, (facet_tier)p->tier)(&j);
+    run(&j);
     return FACET_OK;
 }
 
@@ -273,7 +288,8 @@ facet_status facet_shade_sized(const facet_plan *plan, const facet_batch *batch,
     facet_batch own;
     refuse(error, FACET_OK, 0, -1);
     if (!p) return refuse(error, FACET_ERROR_NULL, "plan", -1);
-    if (!plan_valid(p)) return refuse(error, FACET_ERROR_PLAN, "plan", -1);
+    kernel *run = plan_kernel(p);
+    if (!run) return refuse(error, FACET_ERROR_PLAN, "plan", -1);
     if (!batch) return refuse(error, FACET_ERROR_NULL, "batch", -1);
     if (batch_size != sizeof own) {
         if (!adopt(&own, sizeof own, batch, batch_size)) return refuse(error, FACET_ERROR_SIZE, "batch", -1);
@@ -282,7 +298,7 @@ facet_status facet_shade_sized(const facet_plan *plan, const facet_batch *batch,
     if (light_size != sizeof(facet_light) && batch->light_count) return refuse(error, FACET_ERROR_SIZE, "lights", -1);
 
     environment callers = environment_enter();
-    facet_status status = shade(p, batch, error);
+    facet_status status = shade(p, run, batch, error);
     environment_leave(callers);
     return status;
 }

@@ -231,8 +231,7 @@ OP choice choose_shader(const job *j)
     const plan_fields *p = j->plan;
     const bool plain_lights = j->light_count && !j->check_lights && !j->invalid
                               && !(j->streams & FACET_STREAM_OCCLUSION)
-                              && p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f)
-                              && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
+                              && p->unscaled && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
     const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !j->has_emission;
     switch (p->special) {
 #define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
@@ -529,11 +528,12 @@ static __attribute__((noinline)) void place_values(job *j, block_values values)
         const bool given = !uniform && (j->streams & ~j->unpacked) >> stream & 1;
         for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
             j->mask[c] = given ? ~(size_t)0 : derived ? BLOCK - 1 : 0;
-            if (given) continue;
-            if (uniform) EVERY(k) vf_store(values[c] + k * VF_LANES, splat(*j->component[c]));
-            j->component[c] = uniform || derived ? values[c] : zeros;
+            const float *from = j->component[c];
+            if (uniform) EVERY(k) vf_store(values[c] + k * VF_LANES, splat(*from));
+            j->own[c] = given ? from : uniform || derived ? values[c] : zeros;
         }
     }
+    j->component = j->own;
 }
 
 /* Batches of so many samples do not fit into the caches that a core has to itself, nor does their radiance: it goes
@@ -564,35 +564,57 @@ OP size_t shade_whole_block(const job *j, const block *b, block_shader *shade)
     return invalid.count;
 }
 
+/* Samples of a batch, from the i-th on. */
+OP void take_samples(block *b, const job *j, size_t i, size_t count)
+{
+    b->i = i;
+    b->count = count;
+    for (int c = 0; c < 3; c++) b->radiance[c] = j->radiance[c] + i;
+}
+
+/* A batch of floats, all of which is covered. */
+OP size_t shade_floats(const job *j, block *b, block_shader *shade)
+{
+    const size_t aligned = samples_to_alignment(j);
+    take_samples(b, j, 0, aligned);
+    size_t invalid = shade_whole_block(j, b, shade);
+    if (aligned == j->count) return invalid;
+    take_samples(b, j, aligned, j->count - aligned);
+    b->streams = true;
+    invalid += shade_whole_block(j, b, shade);
+    vf_streamed();
+    return invalid;
+}
+
+/* Any batch. */
+static __attribute__((noinline)) size_t shade_blocks(const job *j, block *b, block_shader *shade, block_values values)
+{
+    const bool unpacks = FACET_HAS(packed) && j->unpacked, packs = FACET_HAS(packed) && j->packs;
+    float radiance[3][BLOCK];
+    size_t invalid = 0;
+    for (size_t i = 0; i < j->count; i += BLOCK) {
+        take_samples(b, j, i, j->count - i < BLOCK ? j->count - i : BLOCK);
+        if (!b->whole) b->covered = covered_samples(j, i, b->count);
+        for (int c = 0; c < 3 && packs; c++) b->radiance[c] = radiance[c];
+        if (unpacks) unpack(j, b, values);
+        if (j->plan->derived) derive(j, b, values);
+        invalid += shade_whole_block(j, b, shade);
+        if (packs) pack(j, b);
+    }
+    return invalid;
+}
+
 void KERNEL(job *j)
 {
-    const bool derived = j->plan->derived;
-    const bool unpacks = FACET_HAS(packed) && j->unpacked, packs = FACET_HAS(packed) && j->packs;
-    const bool in_blocks = derived || unpacks || packs || j->coverage;
     const choice chosen = choose_shader(j);
-    const size_t aligned = in_blocks ? j->count : samples_to_alignment(j);
-    size_t invalid = 0, next;
+    const bool in_blocks = j->plan->derived || j->unpacked || j->packs || j->coverage;
     block_values values;
-    float radiance[3][BLOCK];
     block b;
     if (!j->dense || !chosen.plain) place_values(j, values);
     b.component = j->component;
     b.mask = j->mask;
     b.whole = !j->coverage;
-    b.mended = false;
-
-    for (size_t i = 0; i < j->count; i = next) {
-        next = in_blocks && j->count - i > BLOCK ? i + BLOCK : i < aligned ? aligned : j->count;
-        b.i = i;
-        b.count = next - i;
-        b.streams = i >= aligned;
-        if (!b.whole) b.covered = covered_samples(j, i, b.count);
-        for (int c = 0; c < 3; c++) b.radiance[c] = packs ? radiance[c] : j->radiance[c] + i;
-        if (unpacks) unpack(j, &b, values);
-        if (derived) derive(j, &b, values);
-        invalid += shade_whole_block(j, &b, chosen.shade);
-        if (packs) pack(j, &b);
-    }
-    if (aligned < j->count) vf_streamed();
+    b.mended = b.streams = false;
+    size_t invalid = in_blocks ? shade_blocks(j, &b, chosen.shade, values) : shade_floats(j, &b, chosen.shade);
     if (j->invalid) *j->invalid += invalid;
 }
