@@ -13,6 +13,8 @@ typedef struct { uint32x4_t m; } vm;
 
 #define VF_LANES 4
 #define VF_INTERLEAVE 1
+#define VF_INTERLEAVE_WIDE 2
+#define VF_STREAMS 0
 
 OP vf vf_load(const float *p) { return (vf)*(const vf_memory *)p; }
 OP void vf_store(float *p, vf a) { *(vf_memory *)p = (vf_memory)a; }

@@ -6,10 +6,10 @@
 
 #include "models.tmpl.h"
 
-/* Vectors in a group: what measured fastest for the kernel that has all models, set by the vector layer. Specialised
- * rows take one: features.vectors, a constant. */
-#define VECTORS VF_INTERLEAVE
-#define GROUP   (VECTORS * VF_LANES)
+/* Vectors side by side, features.vectors, a constant: one, or what measured fastest and the vector layer says, for the
+ * kernel that has all models, whose group is what is mended, and for wide rows of special.def. VECTORS: the most. */
+#define GROUP   (VF_INTERLEAVE * VF_LANES)
+#define VECTORS (VF_INTERLEAVE > VF_INTERLEAVE_WIDE ? VF_INTERLEAVE : VF_INTERLEAVE_WIDE)
 #define EACH(k) _Pragma("GCC unroll 4") for (int k = 0; k < x.vectors; k++)
 
 /* A bit for each of n <= 32 lanes. */
@@ -469,7 +469,7 @@ OP void store(const group *g, features x, bool clamped, float *const *radiance, 
         if (clamped)
             out = (vf3){ clamp(out.x, 0.0f, FLT_MAX), clamp(out.y, 0.0f, FLT_MAX), clamp(out.z, 0.0f, FLT_MAX) };
         const size_t i = at + (size_t)k * VF_LANES;
-        if (g->streams) {
+        if (VF_STREAMS && g->streams) {
             vf_stream(radiance[0] + i, out.x);
             vf_stream(radiance[1] + i, out.y);
             vf_stream(radiance[2] + i, out.z);

@@ -44,6 +44,16 @@ enum {
 #include "models.def"
 };
 
+/* The streams that this build's kernels may read: a constant, so that one of few models holds no code for others. */
+enum {
+    READABLE = FACET_STREAM_NORMAL | FACET_STREAM_VIEW | FACET_STREAM_POSITION | FACET_STREAM_OCCLUSION
+#define READABLE_ROW(name, reads) | (FACET_HAS(name) ? reads : 0)
+#define FACET_DIFFUSE(id, name, word, reads, ...) READABLE_ROW(name, (reads))
+#define FACET_DISTRIBUTION FACET_DIFFUSE
+#define FACET_FRESNEL      FACET_DIFFUSE
+#include "models.def"
+};
+
 /* How many rows there are. */
 enum {
 #define FACET_DIFFUSE(...) + 1
@@ -106,6 +116,12 @@ enum {
     COMPONENT_##id, COMPONENT_##id##_LAST = COMPONENT_##id + components - 1,
 #include "streams.def"
     COMPONENT_COUNT
+};
+
+/* The place of every stream's components. */
+static const struct { uint8_t first, components; } places[STREAM_COUNT] __attribute__((unused)) = {
+#define FACET_STREAM(id, field, components, ...) { COMPONENT_##id, components },
+#include "streams.def"
 };
 
 /* Numbers of the material that came from others. */

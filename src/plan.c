@@ -341,7 +341,7 @@ static void fit_fresnel(plan_fields *p)
 /* The row of special.def that the models are. */
 static uint8_t find_special(const plan_fields *p)
 {
-#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any)                                \
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, ...)                                \
     if (p->diffuse == DIFFUSE_##diffuse_ && p->distribution == DISTRIBUTION_##distribution_                           \
         && p->visibility == VISIBILITY_##masking##_##distribution_ && p->fresnel == FRESNEL_##fresnel_                \
         && p->fits == FITS_##fresnel_ && p->coupled == coupled_) return SPECIAL_##name;

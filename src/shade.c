@@ -136,19 +136,23 @@ static inline bool whole_3(const float *const *given) { return given[0] && given
 /* The batch's streams, and the material's numbers in the place of those that it does not promise. */
 static void take_numbers(job *j, uint32_t numbers)
 {
-    const plan_fields *p = j->plan;
+    const float *number = (const float *)(const void *)((const char *)j->plan + offsetof(plan_fields, albedo));
     for (int c = 0; c < COMPONENT_COUNT; c++) j->own[c] = j->component[c];
+    for (; numbers; numbers &= numbers - 1) {
+        const int stream = __builtin_ctz(numbers), first = places[stream].first;
+        for (int c = first; c < first + places[stream].components; c++) j->own[c] = number + (c - COMPONENT_ALBEDO);
+    }
     j->component = j->own;
-#define NUMBERS_1(field) &p->field
-#define NUMBERS_3(field) p->field
-#define NUMBER_GEOMETRY(id, field, components)
-#define NUMBER_MATERIAL(id, field, components)                                                                        \
-    for (int c = 0; c < components && numbers & FACET_STREAM_##id; c++)                                               \
-        j->own[COMPONENT_##id + c] = (NUMBERS_##components(field)) + c;
-#define NUMBER_SOURCE NUMBER_MATERIAL
-#define FACET_STREAM(id, field, components, owner, ...) NUMBER_##owner(id, field, components)
-#include "streams.def"
 }
+
+/* They stand in a plan as a batch's streams do. */
+#define NUMBER_GEOMETRY(id, field)
+#define NUMBER_MATERIAL(id, field)                                                                                    \
+    _Static_assert(offsetof(plan_fields, field)                                                                       \
+                   == offsetof(plan_fields, albedo) + (COMPONENT_##id - COMPONENT_ALBEDO) * sizeof(float), #field);
+#define NUMBER_SOURCE NUMBER_MATERIAL
+#define FACET_STREAM(id, field, components, owner, ...) NUMBER_##owner(id, field)
+#include "streams.def"
 
 /* Those that a material has numbers of. */
 enum {

@@ -150,7 +150,10 @@ OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
 typedef size_t block_shader(const job *, const block *, size_t at, invalids *);
 
 /* What the models and lights read, from the batch, the plan or what the kernel made. */
-OP uint32_t streams_read(const job *j) { return (j->streams & ~j->plan->sources) | j->plan->needed; }
+OP uint32_t streams_read(const job *j)
+{
+    return ((j->streams & ~j->plan->sources) | j->plan->needed) & (uint32_t)READABLE;
+}
 
 /* Any block of any batch. */
 static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, size_t at, invalids *invalid)
@@ -167,14 +170,15 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
         .scaled = p->scale != 1.0f,
         .two_sided = j->flags & FACET_TWO_SIDED,
         .sigma_given = j->given & FACET_STREAM_SIGMA,
-        .vectors = VECTORS,
+        .vectors = VF_INTERLEAVE,
     };
     return shade_block(j, x, b, at, invalid);
 }
 
 /* The rows of special.def: the same body with constants, for any batch, for plain ones, and for those of one light and
  * nothing else. */
-#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_, wide_)                        \
+    enum { NEEDS_VIEW_##name = VIEWED_##diffuse_ != 0 || DISTRIBUTION_##distribution_ != 0 };                         \
     OP features features_##name(bool sigma_given, uint32_t given)                                                     \
     {                                                                                                                 \
         return (features){ .diffuse = (facet_diffuse)DIFFUSE_##diffuse_,                                              \
@@ -183,8 +187,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
                            .fresnel = (facet_fresnel)FRESNEL_##fresnel_,                                              \
                            .fits = FITS_##fresnel_,                                                                   \
                            .streams = FACET_STREAM_NORMAL                                                             \
-                                    | (VIEWED_##diffuse_ || DISTRIBUTION_##distribution_                              \
-                                           ? (uint32_t)FACET_STREAM_VIEW : given & FACET_STREAM_VIEW)                 \
+                                    | (NEEDS_VIEW_##name ? (uint32_t)FACET_STREAM_VIEW : given & FACET_STREAM_VIEW)   \
                                     | DIFFUSE_READS_##diffuse_ | DISTRIBUTION_READS_##distribution_                   \
                                     | FRESNEL_READS_##fresnel_,                                                       \
                            .coupled = coupled_, .sigma_given = sigma_given, .vectors = 1 };                           \
@@ -204,17 +207,25 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
         x.shows = !j->has_ambient && !j->has_emission;                                                                \
         return shade_block(j, x, b, at, invalid);                                                                     \
     }                                                                                                                 \
-    static __attribute__((noinline)) size_t plain_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
+    OP size_t loop_##name(const job *j, const block *b, size_t at, uint32_t view, int vectors)                        \
     {                                                                                                                 \
         const bool reads_sigma = DIFFUSE_READS_##diffuse_ & FACET_STREAM_SIGMA;                                       \
-        features x = features_##name(reads_sigma, j->given);                                                          \
-        (void)invalid;                                                                                                \
+        features x = features_##name(reads_sigma, view);                                                              \
         x.plain = x.shows = x.dense = true;                                                                           \
+        x.vectors = vectors;                                                                                          \
         if (j->dense) return shade_plain(j, x, b, at);                                                                \
         x.dense = false;                                                                                              \
         if (!reads_sigma || j->given & FACET_STREAM_SIGMA) return shade_plain(j, x, b, at);                           \
         x.sigma_given = false;                                                                                        \
         return shade_plain(j, x, b, at);                                                                              \
+    }                                                                                                                 \
+    static __attribute__((noinline)) size_t plain_##name(const job *j, const block *b, size_t at, invalids *invalid)  \
+    {                                                                                                                 \
+        (void)invalid;                                                                                                \
+        if (!NEEDS_VIEW_##name && !(j->given & FACET_STREAM_VIEW)) return loop_##name(j, b, at, 0, 1);                \
+        if ((wide_) && VF_INTERLEAVE_WIDE > 1)                                                                        \
+            at = loop_##name(j, b, at, FACET_STREAM_VIEW, VF_INTERLEAVE_WIDE);                                        \
+        return loop_##name(j, b, at, FACET_STREAM_VIEW, 1);                                                           \
     }
 #include "special.def"
 
@@ -234,7 +245,7 @@ OP choice choose_shader(const job *j)
                               && p->unscaled && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
     const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !j->has_emission;
     switch (p->special) {
-#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_)                               \
+#define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_, wide_)                        \
     case SPECIAL_##name:                                                                                              \
         if (!(SPECIAL_BUILT(diffuse_, distribution_, masking, fresnel_))) break;                                      \
         return (choice){ plain ? plain_##name : plain_lights ? lights_##name : (any_) ? shade_##name : shade_any,     \
@@ -248,19 +259,13 @@ OP choice choose_shader(const job *j)
  * Nearly every group is whole and covered, has normals and finite values, and parameters in their domains. One that has
  * not is copied, mended, shaded like any other, and written sample by sample. */
 
-/* The place of every stream's components. */
-static const struct { uint8_t first, components; } streams[STREAM_COUNT] = {
-#define FACET_STREAM(id, field, components, ...) { COMPONENT_##id, components },
-#include "streams.def"
-};
-
 /* Where the values of component c begin for sample i. */
 OP const float *values_at(const job *j, int c, size_t i)
 {
     return j->component[c] + (j->dense ? i : i & j->mask[c]);
 }
 
-#define EVERY(k) _Pragma("GCC unroll 4") for (int k = 0; k < VECTORS; k++)
+#define EVERY(k) _Pragma("GCC unroll 4") for (int k = 0; k < VF_INTERLEAVE; k++)
 
 /* A component of b's samples at `at`, with zeros behind the end, clamped to its domain. */
 static __attribute__((noinline)) void mend_component(const job *j, const block *b, int c, size_t at, float low,
@@ -298,7 +303,7 @@ static uint32_t mend(const job *j, const block *b, size_t at, float (*values)[GR
 {
     const plan_fields *p = j->plan;
     const uint32_t read = streams_read(j);
-    vf is_finite[VECTORS];
+    vf is_finite[VF_INTERLEAVE];
     EVERY(k) is_finite[k] = splat(0.0f);
 #define FACET_STREAM(id, field, components, owner, low, high, title)                                                  \
     for (int c = COMPONENT_##id; c < COMPONENT_##id + components && read & FACET_STREAM_##id; c++)                    \
@@ -505,15 +510,15 @@ static void pack(const job *j, const block *b)
 /* Parameters that follow from other streams, a block of them. Out of the way of materials that have none. */
 static __attribute__((noinline)) void derive(const job *j, const block *b, block_values values)
 {
-    const plan_fields *p = j->plan;
+    const uint32_t derived = j->plan->derived & (uint32_t)READABLE;
     for (size_t at = 0; at < b->count; at += VF_LANES) {
-        if (p->derived & FACET_STREAM_ALBEDO)
+        if (derived & FACET_STREAM_ALBEDO)
             store3(values, COMPONENT_ALBEDO, at, albedo_of_base(source_BASE(j, b, at), source_METALLIC(j, b, at)));
-        if (p->derived & FACET_STREAM_ALPHA)
+        if (derived & FACET_STREAM_ALPHA)
             vf_store(values[COMPONENT_ALPHA] + at, alpha_of_roughness(derived_roughness(j, b, at)));
-        if (p->derived & FACET_STREAM_ALPHA_Y) vf_store(values[COMPONENT_ALPHA_Y] + at, source_ALPHA(j, b, at));
-        if (p->derived & FACET_STREAM_F0) store3(values, COMPONENT_F0, at, derived_f0(j, b, at));
-        if (p->derived & FACET_STREAM_ETA) store3(values, COMPONENT_ETA, at, derived_eta(j, b, at));
+        if (derived & FACET_STREAM_ALPHA_Y) vf_store(values[COMPONENT_ALPHA_Y] + at, source_ALPHA(j, b, at));
+        if (derived & FACET_STREAM_F0) store3(values, COMPONENT_F0, at, derived_f0(j, b, at));
+        if (derived & FACET_STREAM_ETA) store3(values, COMPONENT_ETA, at, derived_eta(j, b, at));
     }
 }
 
@@ -521,15 +526,15 @@ static __attribute__((noinline)) void derive(const job *j, const block *b, block
  * for what is derived or packed; zeros for what is not read. */
 static __attribute__((noinline)) void place_values(job *j, block_values values)
 {
-    static const float zeros[GROUP];
+    static const float zeros[VECTORS * VF_LANES];
     const uint32_t made = j->plan->derived | j->unpacked;
     for (int stream = 0; stream < STREAM_COUNT; stream++) {
         const bool derived = made >> stream & 1, uniform = j->uniform >> stream & 1;
         const bool given = !uniform && (j->streams & ~j->unpacked) >> stream & 1;
-        for (int c = streams[stream].first; c < streams[stream].first + streams[stream].components; c++) {
+        for (int c = places[stream].first; c < places[stream].first + places[stream].components; c++) {
             j->mask[c] = given ? ~(size_t)0 : derived ? BLOCK - 1 : 0;
             const float *from = j->component[c];
-            if (uniform) EVERY(k) vf_store(values[c] + k * VF_LANES, splat(*from));
+            for (int k = 0; k < VECTORS && uniform; k++) vf_store(values[c] + k * VF_LANES, splat(*from));
             j->own[c] = given ? from : uniform || derived ? values[c] : zeros;
         }
     }
@@ -547,7 +552,7 @@ OP size_t samples_to_alignment(const job *j)
 {
     const uintptr_t size = sizeof(vf), first = (uintptr_t)j->radiance[0] % size;
     const bool together = (uintptr_t)j->radiance[1] % size == first && (uintptr_t)j->radiance[2] % size == first;
-    if (j->count < STREAMED || !together || first % sizeof(float)) return j->count;
+    if (!VF_STREAMS || j->count < STREAMED || !together || first % sizeof(float)) return j->count;
     return (size - first) % size / sizeof(float);
 }
 
@@ -578,7 +583,7 @@ OP size_t shade_floats(const job *j, block *b, block_shader *shade)
     const size_t aligned = samples_to_alignment(j);
     take_samples(b, j, 0, aligned);
     size_t invalid = shade_whole_block(j, b, shade);
-    if (aligned == j->count) return invalid;
+    if (!VF_STREAMS || aligned == j->count) return invalid;
     take_samples(b, j, aligned, j->count - aligned);
     b->streams = true;
     invalid += shade_whole_block(j, b, shade);
@@ -597,7 +602,7 @@ static __attribute__((noinline)) size_t shade_blocks(const job *j, block *b, blo
         if (!b->whole) b->covered = covered_samples(j, i, b->count);
         for (int c = 0; c < 3 && packs; c++) b->radiance[c] = radiance[c];
         if (unpacks) unpack(j, b, values);
-        if (j->plan->derived) derive(j, b, values);
+        if (j->plan->derived & (uint32_t)READABLE) derive(j, b, values);
         invalid += shade_whole_block(j, b, shade);
         if (packs) pack(j, b);
     }
@@ -607,7 +612,7 @@ static __attribute__((noinline)) size_t shade_blocks(const job *j, block *b, blo
 void KERNEL(job *j)
 {
     const choice chosen = choose_shader(j);
-    const bool in_blocks = j->plan->derived || j->unpacked || j->packs || j->coverage;
+    const bool in_blocks = j->plan->derived & (uint32_t)READABLE || j->unpacked || j->packs || j->coverage;
     block_values values;
     block b;
     if (!j->dense || !chosen.plain) place_values(j, values);

@@ -44,7 +44,7 @@ static const pair pairs[] = {
 
 /* The rows of special.def, which the library has kernels of their own for. */
 static const struct { int diffuse, distribution, masking, fresnel; bool coupled; } specials[] = {
-#define FACET_SPECIAL(name, diffuse, distribution, masking, fresnel, coupled, any)                                    \
+#define FACET_SPECIAL(name, diffuse, distribution, masking, fresnel, coupled, ...)                                    \
     { DIFFUSE_##diffuse, DISTRIBUTION_##distribution, MASKING_##masking, FRESNEL_##fresnel, coupled },
 #include "special.def"
 };

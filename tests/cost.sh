@@ -85,23 +85,26 @@ instructions() {
 
 # ---- Cycles: the loop over whole groups, every stream per sample, by itself ------------------------------------------
 
-# From objdump's text on stdin, to DIR/NAME.s for each plain_NAME: the shortest backward jump's span in which something
-# is divided, or at least multiplied, and results are stored, a vector of each channel. Prints "NAME VECTORS INSTRUCTIONS", 0 0 where none is.
+# From objdump's text on stdin, to DIR/NAME.s for each plain_NAME: the backward jump's span in which something is
+# divided, or at least multiplied, and results are stored, a vector of each channel: the shortest for a vector. Prints
+# "NAME VECTORS INSTRUCTIONS", 0 0 where none is.
 loops() {
     awk -F'\t' -v dir="$1" '
         function store(text) {
             return text ~ /^v?movups +%[xyz]mm[0-9]+,.*\)$/ && text !~ /\(%rsp/ || text ~ /^str +q/ && text !~ /\[sp/
         }
         # Sets where it begins; returns its length.
-        function shortest(work,  i, j, n, least) {
+        function shortest(work,  i, j, n, stored, least, vectors) {
             least = 0
             for (i = 1; i <= count; i++) {
                 j = to[i] in place ? place[to[i]] : count
                 n = i - j + 1
-                if (j >= i || work[i] == work[j - 1] || stores[i] - stores[j - 1] < 3) continue
-                if (least && least <= n) continue
+                stored = stores[i] - stores[j - 1]
+                if (j >= i || work[i] == work[j - 1] || stored < 3) continue
+                if (least && least / vectors <= n / stored) continue
                 from = j
                 least = n
+                vectors = stored
             }
             return least
         }
