@@ -155,6 +155,9 @@ OP uint32_t streams_read(const job *j)
     return ((j->streams & ~j->plan->sources) | j->plan->needed) & (uint32_t)READABLE;
 }
 
+/* What of it the kernel derives from others. */
+OP uint32_t streams_derived(const job *j) { return j->plan->derived & (uint32_t)READABLE; }
+
 /* Any block of any batch. */
 static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, size_t at, invalids *invalid)
 {
@@ -510,7 +513,7 @@ static void pack(const job *j, const block *b)
 /* Parameters that follow from other streams, a block of them. Out of the way of materials that have none. */
 static __attribute__((noinline)) void derive(const job *j, const block *b, block_values values)
 {
-    const uint32_t derived = j->plan->derived & (uint32_t)READABLE;
+    const uint32_t derived = streams_derived(j);
     for (size_t at = 0; at < b->count; at += VF_LANES) {
         if (derived & FACET_STREAM_ALBEDO)
             store3(values, COMPONENT_ALBEDO, at, albedo_of_base(source_BASE(j, b, at), source_METALLIC(j, b, at)));
@@ -527,7 +530,7 @@ static __attribute__((noinline)) void derive(const job *j, const block *b, block
 static __attribute__((noinline)) void place_values(job *j, block_values values)
 {
     static const float zeros[VECTORS * VF_LANES];
-    const uint32_t made = j->plan->derived | j->unpacked;
+    const uint32_t made = streams_derived(j) | j->unpacked;
     for (int stream = 0; stream < STREAM_COUNT; stream++) {
         const bool derived = made >> stream & 1, uniform = j->uniform >> stream & 1;
         const bool given = !uniform && (j->streams & ~j->unpacked) >> stream & 1;
@@ -569,22 +572,22 @@ OP size_t shade_whole_block(const job *j, const block *b, block_shader *shade)
     return invalid.count;
 }
 
-/* Samples of a batch, from the i-th on. */
-OP void take_samples(block *b, const job *j, size_t i, size_t count)
+/* Samples of a batch, from the i-th on; their radiance goes to `radiance`, from `at` on. */
+OP void take_samples(block *b, size_t i, size_t count, float *const *radiance, size_t at)
 {
     b->i = i;
     b->count = count;
-    for (int c = 0; c < 3; c++) b->radiance[c] = j->radiance[c] + i;
+    for (int c = 0; c < 3; c++) b->radiance[c] = radiance[c] + at;
 }
 
 /* A batch of floats, all of which is covered. */
 OP size_t shade_floats(const job *j, block *b, block_shader *shade)
 {
     const size_t aligned = samples_to_alignment(j);
-    take_samples(b, j, 0, aligned);
+    take_samples(b, 0, aligned, j->radiance, 0);
     size_t invalid = shade_whole_block(j, b, shade);
     if (!VF_STREAMS || aligned == j->count) return invalid;
-    take_samples(b, j, aligned, j->count - aligned);
+    take_samples(b, aligned, j->count - aligned, j->radiance, aligned);
     b->streams = true;
     invalid += shade_whole_block(j, b, shade);
     vf_streamed();
@@ -595,14 +598,14 @@ OP size_t shade_floats(const job *j, block *b, block_shader *shade)
 static __attribute__((noinline)) size_t shade_blocks(const job *j, block *b, block_shader *shade, block_values values)
 {
     const bool unpacks = FACET_HAS(packed) && j->unpacked, packs = FACET_HAS(packed) && j->packs;
-    float radiance[3][BLOCK];
+    float memory[3][BLOCK], *const radiance[3] = { memory[0], memory[1], memory[2] };
     size_t invalid = 0;
     for (size_t i = 0; i < j->count; i += BLOCK) {
-        take_samples(b, j, i, j->count - i < BLOCK ? j->count - i : BLOCK);
-        if (!b->whole) b->covered = covered_samples(j, i, b->count);
-        for (int c = 0; c < 3 && packs; c++) b->radiance[c] = radiance[c];
+        const size_t count = j->count - i < BLOCK ? j->count - i : BLOCK;
+        take_samples(b, i, count, packs ? radiance : j->radiance, packs ? 0 : i);
+        if (!b->whole) b->covered = covered_samples(j, i, count);
         if (unpacks) unpack(j, b, values);
-        if (j->plan->derived & (uint32_t)READABLE) derive(j, b, values);
+        if (streams_derived(j)) derive(j, b, values);
         invalid += shade_whole_block(j, b, shade);
         if (packs) pack(j, b);
     }
@@ -612,7 +615,7 @@ static __attribute__((noinline)) size_t shade_blocks(const job *j, block *b, blo
 void KERNEL(job *j)
 {
     const choice chosen = choose_shader(j);
-    const bool in_blocks = j->plan->derived & (uint32_t)READABLE || j->unpacked || j->packs || j->coverage;
+    const bool in_blocks = streams_derived(j) || j->unpacked || j->packs || j->coverage;
     block_values values;
     block b;
     if (!j->dense || !chosen.plain) place_values(j, values);
