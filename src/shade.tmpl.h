@@ -208,6 +208,10 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
         features x = features_##name(j->given & FACET_STREAM_SIGMA, j->given);                                        \
         x.plain = true;                                                                                               \
         x.shows = !j->has_ambient && !j->has_emission;                                                                \
+        if ((any_) && j->dense) {                                                                                     \
+            x.dense = true;                                                                                           \
+            return shade_block(j, x, b, at, invalid);                                                                 \
+        }                                                                                                             \
         return shade_block(j, x, b, at, invalid);                                                                     \
     }                                                                                                                 \
     OP size_t loop_##name(const job *j, const block *b, size_t at, uint32_t view, int vectors)                        \
