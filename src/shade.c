@@ -30,12 +30,13 @@ static bool none_given(const float *const *stream)
     return !((uintptr_t)stream[0] | (uintptr_t)stream[1] | (uintptr_t)stream[2]);
 }
 
-static facet_status check_stream(const float *const *stream, int components, const char *field, int index,
-                                 facet_error *error)
+/* Whether a stream of one component, of three, is there. */
+static inline bool whole_1(const float *given) { return given; }
+static inline bool whole_3(const float *const *given) { return given[0] && given[1] && given[2]; }
+
+static facet_status check_stream(const float *const *stream, const char *field, int index, facet_error *error)
 {
-    for (int c = 0; c < components; c++)
-        if (!stream[c]) return refuse(error, FACET_ERROR_NULL, field, index);
-    return FACET_OK;
+    return whole_3(stream) ? FACET_OK : refuse(error, FACET_ERROR_NULL, field, index);
 }
 
 /* A cone's cosines: -1 <= cos_outer <= cos_inner <= 1; NaN is neither. */
@@ -65,12 +66,12 @@ static facet_status check_light(const facet_light *light, int index, facet_error
     else if (none_given(light->direction_of))
         status = check_light_vector(light->direction, "light.direction", index, error);
     else
-        status = check_stream(light->direction_of, 3, "light.direction_of", index, error);
+        status = check_stream(light->direction_of, "light.direction_of", index, error);
     if (status) return status;
 
     if (none_given(light->irradiance_of))
         return check_light_vector(light->irradiance, "light.irradiance", index, error);
-    return check_stream(light->irradiance_of, 3, "light.irradiance_of", index, error);
+    return check_stream(light->irradiance_of, "light.irradiance_of", index, error);
 }
 
 /* Whether the light needs more of the kernel than a plain one. */
@@ -128,10 +129,6 @@ static facet_status take_ambient(job *j, const facet_batch *b, facet_error *erro
 #define FACET_STREAM(id, field, ...)                                                                                  \
     _Static_assert(offsetof(facet_batch, field) == FIRST_STREAM + COMPONENT_##id * sizeof(float *), #field);
 #include "streams.def"
-
-/* Whether a stream of one component, of three, is there. */
-static inline bool whole_1(const float *given) { return given; }
-static inline bool whole_3(const float *const *given) { return given[0] && given[1] && given[2]; }
 
 /* The batch's streams, and the material's numbers in the place of those that it does not promise. */
 static void take_numbers(job *j, uint32_t numbers)
