@@ -10,4 +10,12 @@
 #define OP static inline __attribute__((unused))
 #endif
 
+/* Before a loop over a few vectors, which becomes none. Clang 14, told a number, unrolls it too late for its arrays to
+ * be registers. */
+#ifdef __clang__
+#define UNROLLED _Pragma("clang loop unroll(full)")
+#else
+#define UNROLLED _Pragma("GCC unroll 4")
+#endif
+
 #endif

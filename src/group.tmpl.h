@@ -10,7 +10,7 @@
  * kernel that has all models, whose group is what is mended, and for wide rows of special.def. VECTORS: the most. */
 #define GROUP   (VF_INTERLEAVE * VF_LANES)
 #define VECTORS (VF_INTERLEAVE > VF_INTERLEAVE_WIDE ? VF_INTERLEAVE : VF_INTERLEAVE_WIDE)
-#define EACH(k) _Pragma("GCC unroll 4") for (int k = 0; k < x.vectors; k++)
+#define EACH(k) UNROLLED for (int k = 0; k < x.vectors; k++)
 
 /* A bit for each of n <= 32 lanes. */
 #define LANES(n) ((uint32_t)((1ull << (n)) - 1))
@@ -443,7 +443,7 @@ OP uint32_t add_constants(group *g, features x, const job *j, float *const *radi
 {
     uint32_t invalid = 0;
     if (j->has_ambient) EACH(k) g->sum[k] = mad3(load_ALBEDO(g, x, k), ambient(g, x, j, k), g->sum[k]);
-    if (j->has_emission) EACH(k) g->sum[k] = add3(g->sum[k], splat3(j->plan->emission));
+    if (j->plan->emits) EACH(k) g->sum[k] = add3(g->sum[k], splat3(j->plan->emission));
     if (j->flags & FACET_ACCUMULATE)
         EACH(k) {
             const size_t i = at + (size_t)k * VF_LANES;

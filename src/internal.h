@@ -13,8 +13,9 @@
 
 #define INV_PI 0.318309886f
 
-/* 32 bits of anything. */
+/* 32 bits of anything; two of them. */
 typedef uint32_t __attribute__((may_alias)) bits32;
+typedef uint64_t __attribute__((may_alias, aligned(4))) bits64;
 
 /* FACET_HAS(name): 1 for a row of models.def that this build holds. FACET_BUILT(x): 1 where x is defined as 1. */
 #define FACET_BUILT_COMMA_1 0,
@@ -124,6 +125,11 @@ static const struct { uint8_t first, components; } places[STREAM_COUNT] __attrib
 #include "streams.def"
 };
 
+/* The streams that most batches have; their NaNs and infinities show in the result (features.shows). */
+#define COMMON_STREAMS                                                                                                \
+    ((uint32_t)(FACET_STREAM_NORMAL | FACET_STREAM_VIEW | FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA                    \
+                | FACET_STREAM_ALPHA | FACET_STREAM_F0))
+
 /* Numbers of the material that came from others. */
 enum { F0_FROM_ETA = 1, ETA_FROM_F0 = 2, F82_FROM_ETA = 4 };
 
@@ -141,6 +147,7 @@ typedef struct __attribute__((may_alias)) plan_fields {
             uint8_t fits;                /* 0: the exact term is evaluated; 1: the three of `fit` are equal; 3 */
             uint8_t special;             /* SPECIAL_NAME: the row of special.def */
             uint8_t unscaled;            /* scale and f90 are 1, as that row has them for plain batches */
+            uint8_t emits;
         };
     };
     uint32_t promised;                   /* FACET_STREAM_*: by the material */
@@ -192,10 +199,9 @@ typedef struct job {
     size_t light_count;
     float ambient[3], sh[4][3];          /* irradiance over pi: everywhere; 1, y, z, x of the normal */
     bool has_ambient, has_sh;
-    bool has_emission;
     bool check_lights;                   /* a light is not directional, has a stream, or an irradiance below 0 */
     const uint8_t *coverage;
-    float *radiance[3];
+    float *const *radiance;
     bool packs;                          /* radiance goes into packed->half, packed->pixels */
     uint32_t flags;
     size_t *invalid;

@@ -380,6 +380,7 @@ static __attribute__((noinline)) facet_status compile(facet_plan *out, const fac
     p->unscaled = p->scale == 1.0f && !(p->fresnel_properties & F90 && p->f90 != 1.0f);
     p->clamped_alpha = p->convention == FACET_CONVENTION_DIRECT && p->alpha != 0.0f && p->alpha != m->specular.alpha;
     store3(p->emission, not_negative3(splat3(m->emission)));
+    p->emits = p->emission[0] > 0.0f || p->emission[1] > 0.0f || p->emission[2] > 0.0f;
     p->sum = plan_sum(p);
     return FACET_OK;
 }

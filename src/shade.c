@@ -3,12 +3,13 @@
 
 #include "../arch/environment.h"
 
-/* By their bits: fewer instructions than floats' comparisons. */
+/* By their bits, two at once: fewer instructions than floats' comparisons. */
 static bool all_zero(const float *a, int count)
 {
-    bits32 any = 0;
-    for (int i = 0; i < count; i++) any |= ((const bits32 *)a)[i];
-    return any << 1 == 0;
+    bits64 any = 0;
+    for (int i = 0; i + 1 < count; i += 2) any |= *(const bits64 *)(const void *)(a + i);
+    if (count % 2) any |= ((const bits32 *)a)[count - 1];
+    return !(any & UINT64_C(0x7fffffff7fffffff));
 }
 
 static facet_status check_vector(const float *a, const char *field, int index, facet_error *error)
@@ -17,18 +18,21 @@ static facet_status check_vector(const float *a, const char *field, int index, f
     return sum == 0.0f ? FACET_OK : refuse(error, FACET_ERROR_VALUE, field, index);
 }
 
-/* A light's uniform vector: finite and not zero. */
-static facet_status check_light_vector(const float *a, const char *field, int index, facet_error *error)
+/* A light's uniform vector: finite and not zero, which nearly every one's square shows. */
+static inline facet_status check_light_vector(const float *a, const char *field, int index, facet_error *error)
 {
+    const float square = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    if (__builtin_expect(square > 0.0f && square <= FLT_MAX, 1)) return FACET_OK;
     if (all_zero(a, 3)) return refuse(error, FACET_ERROR_VALUE, field, index);
     return check_vector(a, field, index, error);
 }
 
-/* Without a branch for each. */
-static bool none_given(const float *const *stream)
+/* Bits of three pointers, none where all are NULL: without a branch for each. */
+static uintptr_t given_of_3(const float *const *stream)
 {
-    return !((uintptr_t)stream[0] | (uintptr_t)stream[1] | (uintptr_t)stream[2]);
+    return (uintptr_t)stream[0] | (uintptr_t)stream[1] | (uintptr_t)stream[2];
 }
+static bool none_given(const float *const *stream) { return !given_of_3(stream); }
 
 /* Whether a stream of one component, of three, is there. */
 static inline bool whole_1(const float *given) { return given; }
@@ -57,7 +61,7 @@ static facet_status check_place(const facet_light *light, int index, facet_error
     return status || light->kind != FACET_LIGHT_SPOT ? status : check_spot(light, index, error);
 }
 
-static facet_status check_light(const facet_light *light, int index, facet_error *error)
+static __attribute__((noinline)) facet_status check_light(const facet_light *light, int index, facet_error *error)
 {
     facet_status status;
     if ((unsigned)light->kind > FACET_LIGHT_SPOT) return refuse(error, FACET_ERROR_ENUM, "light.kind", index);
@@ -74,13 +78,20 @@ static facet_status check_light(const facet_light *light, int index, facet_error
     return check_stream(light->irradiance_of, "light.irradiance_of", index, error);
 }
 
-/* Whether the light needs more of the kernel than a plain one. */
-static bool is_special(const facet_light *light)
+/* A directional light without streams, which nearly every one is. */
+static inline bool is_plain(const facet_light *light)
 {
-    const float *E = light->irradiance;
-    return light->kind != FACET_LIGHT_DIRECTIONAL || light->direction_of[0] || light->irradiance_of[0]
-        || light->visibility || E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f;
+    return !((uintptr_t)light->kind | given_of_3(light->direction_of) | given_of_3(light->irradiance_of)
+             | (uintptr_t)light->visibility);
 }
+
+static facet_status check_plain_light(const facet_light *light, int index, facet_error *error)
+{
+    facet_status status = check_light_vector(light->direction, "light.direction", index, error);
+    return status ? status : check_light_vector(light->irradiance, "light.irradiance", index, error);
+}
+
+static bool is_negative(const float *E) { return E[0] < 0.0f || E[1] < 0.0f || E[2] < 0.0f; }
 
 static facet_status check_lights(job *j, const facet_batch *b, facet_error *error)
 {
@@ -88,8 +99,9 @@ static facet_status check_lights(job *j, const facet_batch *b, facet_error *erro
     if (b->light_count && !b->lights) return refuse(error, FACET_ERROR_NULL, "lights", -1);
     for (size_t i = 0; !status && i < b->light_count; i++) {
         const facet_light *light = &b->lights[i];
-        status = check_light(light, (int)i, error);
-        if (is_special(light)) j->check_lights = true;
+        const bool plain = is_plain(light);
+        status = plain ? check_plain_light(light, (int)i, error) : check_light(light, (int)i, error);
+        if (!plain || is_negative(light->irradiance)) j->check_lights = true;
         if (light->kind != FACET_LIGHT_DIRECTIONAL) j->streams |= FACET_STREAM_POSITION;
     }
     return status;
@@ -113,8 +125,6 @@ static facet_status take_sh(job *j, const facet_batch *b, facet_error *error)
 
 static facet_status take_ambient(job *j, const facet_batch *b, facet_error *error)
 {
-    j->has_ambient = false;
-    if (all_zero(b->ambient, 3) && all_zero(b->sh[0], 12)) return FACET_OK;
     facet_status status = check_vector(b->ambient, "ambient", -1, error);
     if (!status) status = take_sh(j, b, error);
     if (status) return status;
@@ -177,15 +187,16 @@ static facet_status check_camera(const facet_camera *camera, size_t count, facet
     return FACET_OK;
 }
 
-static bool takes_packed(const facet_packed *p)
+/* Bits of what comes packed; of what goes. */
+static uintptr_t packed_in(const facet_packed *p)
 {
     return (uintptr_t)p->normal | (uintptr_t)p->camera | (uintptr_t)p->albedo_roughness | (uintptr_t)p->f0_sigma;
 }
-
-static bool gives_halves(const facet_packed *p)
+static uintptr_t halves(const facet_packed *p)
 {
     return (uintptr_t)p->half[0] | (uintptr_t)p->half[1] | (uintptr_t)p->half[2];
 }
+static uintptr_t packed_out(const facet_packed *p) { return halves(p) | (uintptr_t)p->pixels; }
 
 static facet_status check_words(const void *packed, const char *field, facet_error *error)
 {
@@ -201,7 +212,7 @@ static __attribute__((noinline, cold)) facet_status check_packed(const job *j, f
     if (!status) status = check_words(p->pixels, "packed.pixels", error);
     if (!status && p->camera) status = check_camera(p->camera, j->count, error);
     if (status || !j->packs) return status;
-    for (int c = 0; c < 3 && gives_halves(p); c++)
+    for (int c = 0; c < 3 && halves(p); c++)
         if (!p->half[c]) return refuse(error, FACET_ERROR_NULL, "packed.half", c);
     if (!(p->exposure >= 0.0f && finite(p->exposure))) return refuse(error, FACET_ERROR_VALUE, "packed.exposure", -1);
     if (j->flags & FACET_ACCUMULATE) return refuse(error, FACET_ERROR_ENUM, "flags", -1);
@@ -219,22 +230,47 @@ static uint32_t packed_streams(const facet_packed *p, uint32_t promised)
     return streams;
 }
 
+/* Whether of the streams that most batches have those are there that are given. */
+static inline bool common_given(const facet_batch *b, uint32_t given)
+{
+#define FACET_STREAM(id, field, components, ...)                                                                      \
+    if (COMMON_STREAMS & given & FACET_STREAM_##id && !whole_##components(b->field)) return false;
+#include "streams.def"
+    return true;
+}
+
+/* Refuses the first that is given and not there. */
+static __attribute__((noinline)) facet_status check_given(const float *const *component, uint32_t given,
+                                                          facet_error *error)
+{
+    static const char names[STREAM_COUNT][16] = {
+#define FACET_STREAM(id, field, ...) #field,
+#include "streams.def"
+    };
+    for (; given; given &= given - 1) {
+        const int stream = __builtin_ctz(given), first = places[stream].first;
+        for (int c = first; c < first + places[stream].components; c++)
+            if (!component[c]) return refuse(error, FACET_ERROR_NULL, names[stream], -1);
+    }
+    return FACET_OK;
+}
+
 /* Finds the streams that are read, or the plan's numbers in their place; names the first that is not there. What the
  * material promised and nothing reads must be there too. */
-static facet_status gather_streams(job *j, const facet_batch *b, facet_error *error)
+static facet_status gather_streams(job *j, const facet_batch *b, bool packed, facet_error *error)
 {
     const plan_fields *p = j->plan;
     j->streams |= FACET_STREAM_NORMAL | ((p->needed | p->sources) & ~p->derived);
     if (b->flags & FACET_TWO_SIDED || !none_given(b->view)) j->streams |= FACET_STREAM_VIEW;
-    j->unpacked = takes_packed(j->packed) ? packed_streams(j->packed, p->promised) : 0;
+    j->unpacked = packed ? packed_streams(j->packed, p->promised) : 0;
     j->streams |= j->unpacked & FACET_STREAM_VIEW;
     const uint32_t taken = j->streams | p->promised, numbers = taken & NUMBERED & ~p->promised;
     const uint32_t given = taken & ~(numbers | j->unpacked);
-#define FACET_STREAM(id, field, components, ...)                                                                      \
-    if (given & FACET_STREAM_##id && !whole_##components(b->field))                                                   \
-        return refuse(error, FACET_ERROR_NULL, #field, -1);
-#include "streams.def"
     j->component = (const float *const *)(const void *)((const char *)b + FIRST_STREAM);
+    if (given & ~COMMON_STREAMS || !common_given(b, given)) {
+        facet_status status = check_given(j->component, given, error);
+        if (status) return status;
+    }
     if (numbers) take_numbers(j, numbers);
     j->uniform = ((b->uniform & ~j->unpacked) | numbers) & j->streams;
     j->given = (given | j->unpacked) & j->streams;
@@ -242,15 +278,33 @@ static facet_status gather_streams(job *j, const facet_batch *b, facet_error *er
     return FACET_OK;
 }
 
-static facet_status check_batch(job *j, const facet_batch *b, facet_error *error)
+static facet_status check_flags(const facet_batch *b, facet_error *error)
 {
     const uint32_t known_flags = FACET_ACCUMULATE | FACET_TWO_SIDED, known_streams = ((uint32_t)1 << STREAM_COUNT) - 1;
     if (b->flags & ~known_flags) return refuse(error, FACET_ERROR_ENUM, "flags", -1);
-    if (b->uniform & ~known_streams) return refuse(error, FACET_ERROR_ENUM, "uniform", -1);
-    facet_status status = check_lights(j, b, error);
-    if (!status) status = take_ambient(j, b, error);
-    if (!status) status = gather_streams(j, b, error);
-    if (!status && (takes_packed(j->packed) || j->packs))
+    return b->uniform & ~known_streams ? refuse(error, FACET_ERROR_ENUM, "uniform", -1) : FACET_OK;
+}
+
+/* ambient and sh stand one after the other. */
+_Static_assert(offsetof(facet_batch, sh) == offsetof(facet_batch, ambient) + 3 * sizeof(float), "sh");
+
+/* Streams of floats and lights, and nothing else: as most batches are. */
+static inline bool is_simple(const facet_batch *b)
+{
+    const float *ambient = (const float *)(const void *)((const char *)b + offsetof(facet_batch, ambient));
+    return !(b->flags | b->uniform | packed_in(&b->packed) | packed_out(&b->packed)) && all_zero(ambient, 15);
+}
+
+static facet_status check_batch(job *j, const facet_batch *b, facet_error *error)
+{
+    const bool simple = is_simple(b);
+    facet_status status = simple ? FACET_OK : check_flags(b, error);
+    j->packs = !simple && packed_out(&b->packed);
+    j->has_ambient = false;
+    if (!status) status = check_lights(j, b, error);
+    if (!status && !simple) status = take_ambient(j, b, error);
+    if (!status) status = gather_streams(j, b, !simple && packed_in(&b->packed), error);
+    if (!status && !simple && (packed_in(j->packed) || j->packs))
         status = FACET_HAS(packed) ? check_packed(j, error) : refuse(error, FACET_ERROR_MODEL, "packed", -1);
     for (int c = 0; c < 3 && !status && !j->packs; c++)
         if (!b->radiance[c]) status = refuse(error, FACET_ERROR_NULL, "radiance", c);
@@ -268,7 +322,6 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, kernel
     j.count = b->count;
     j.flags = b->flags;
     j.packed = &b->packed;
-    j.packs = gives_halves(&b->packed) || b->packed.pixels;
     facet_status status = check_batch(&j, b, error);
     if (status) return status;
 
@@ -276,8 +329,7 @@ static __attribute__((noinline)) facet_status shade(const plan_fields *p, kernel
     j.light_count = b->light_count;
     j.coverage = b->coverage;
     j.invalid = b->invalid;
-    j.has_emission = !all_zero(p->emission, 3);
-    for (int c = 0; c < 3; c++) j.radiance[c] = b->radiance[c];
+    j.radiance = b->radiance;
     run(&j);
     return FACET_OK;
 }

@@ -31,11 +31,6 @@ OP vf any_bits(vf3 a) { return vf_or(vf_or(a.x, a.y), a.z); }
 OP vf not_finite_1(vf a, vf sum) { return vf_mad(a, splat(0.0f), sum); }
 OP vf not_finite_3(vf3 a, vf sum) { return not_finite_1(a.x, not_finite_1(a.y, not_finite_1(a.z, sum))); }
 
-/* The streams that most batches have, and whose NaNs and infinities show in the result (features.shows). */
-#define COMMON_STREAMS                                                                                                \
-    ((uint32_t)(FACET_STREAM_NORMAL | FACET_STREAM_VIEW | FACET_STREAM_ALBEDO | FACET_STREAM_SIGMA                    \
-                | FACET_STREAM_ALPHA | FACET_STREAM_F0))
-
 /* A sign where a vector is 0. */
 OP vf no_vector(vf3 a) { return below(vf_abs(any_bits(a)), FLT_TRUE_MIN); }
 
@@ -115,8 +110,8 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, inval
     return at;
 }
 
-/* The same for one plain light: how it meets a group is found beside what the group before reflects, so that one's
- * arithmetic fills the other's latencies. */
+/* The same for one plain light. VF_AHEAD: how it meets a group is found beside what the group before reflects, so that
+ * one's arithmetic fills the other's latencies. */
 OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
 {
     const size_t end = covered_end(b, at), step = (size_t)x.vectors * VF_LANES;
@@ -128,21 +123,23 @@ OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
     EACH(k) l[k] = splat3(light->direction);
     EACH(k) E[k] = scale3(splat3(light->irradiance), splat(INV_PI));
     group g = open_group(j, x, b, at), h = g;
-    look(&g, x);
-    meet(&g, x, l, t);
+    if (VF_AHEAD) {
+        look(&g, x);
+        meet(&g, x, l, t);
+    }
     for (; at + step <= end; at += step) {
         vf odd[VECTORS];
-        h.at = at + 2 * step <= end ? g.at + step : g.at;
+        h.at = VF_AHEAD && at + 2 * step <= end ? g.at + step : g.at;
         look(&h, x);
-        meet(&h, x, l, next);
+        meet(&h, x, l, VF_AHEAD ? next : t);
         EACH(k) odd[k] = odd_values(&g, x, k);
         prepare(&g, x);
         reflect(&g, x, t, g.sum);
         EACH(k) g.sum[k] = mul3(g.sum[k], E[k]);
         if (is_odd(&g, x, odd)) break;
         store(&g, x, false, b->radiance, at);
-        g.at = h.at;
-        EACH(k) t[k] = next[k];
+        g.at = VF_AHEAD ? h.at : g.at + step;
+        if (VF_AHEAD) EACH(k) t[k] = next[k];
     }
     return at;
 }
@@ -207,7 +204,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
     {                                                                                                                 \
         features x = features_##name(j->given & FACET_STREAM_SIGMA, j->given);                                        \
         x.plain = true;                                                                                               \
-        x.shows = !j->has_ambient && !j->has_emission;                                                                \
+        x.shows = !j->has_ambient && !j->plan->emits;                                                                \
         if ((any_) && j->dense) {                                                                                     \
             x.dense = true;                                                                                           \
             return shade_block(j, x, b, at, invalid);                                                                 \
@@ -250,7 +247,7 @@ OP choice choose_shader(const job *j)
     const bool plain_lights = j->light_count && !j->check_lights && !j->invalid
                               && !(j->streams & FACET_STREAM_OCCLUSION)
                               && p->unscaled && !(j->flags & (FACET_ACCUMULATE | FACET_TWO_SIDED));
-    const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !j->has_emission;
+    const bool plain = plain_lights && j->light_count == 1 && !j->has_ambient && !p->emits;
     switch (p->special) {
 #define FACET_SPECIAL(name, diffuse_, distribution_, masking, fresnel_, coupled_, any_, wide_)                        \
     case SPECIAL_##name:                                                                                              \
@@ -272,7 +269,7 @@ OP const float *values_at(const job *j, int c, size_t i)
     return j->component[c] + (j->dense ? i : i & j->mask[c]);
 }
 
-#define EVERY(k) _Pragma("GCC unroll 4") for (int k = 0; k < VF_INTERLEAVE; k++)
+#define EVERY(k) UNROLLED for (int k = 0; k < VF_INTERLEAVE; k++)
 
 /* A component of b's samples at `at`, with zeros behind the end, clamped to its domain. */
 static __attribute__((noinline)) void mend_component(const job *j, const block *b, int c, size_t at, float low,
@@ -557,9 +554,10 @@ static __attribute__((noinline)) void place_values(job *j, block_values values)
  * as many as there are where it is small, or they are never aligned together. */
 OP size_t samples_to_alignment(const job *j)
 {
+    if (!VF_STREAMS || j->count < STREAMED) return j->count;
     const uintptr_t size = sizeof(vf), first = (uintptr_t)j->radiance[0] % size;
     const bool together = (uintptr_t)j->radiance[1] % size == first && (uintptr_t)j->radiance[2] % size == first;
-    if (!VF_STREAMS || j->count < STREAMED || !together || first % sizeof(float)) return j->count;
+    if (!together || first % sizeof(float)) return j->count;
     return (size - first) % size / sizeof(float);
 }
 
