@@ -175,7 +175,7 @@ $(BUILD)/facet-bench: $(BENCH:%=$(BUILD)/bench/%.o) $(BUILD)/tests/cases.o $(BUI
 	$(say)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lm
 
 # The baselines' errors, by the tests' reference.
-ERRORS := $(addprefix tests/,baselines bounds cases random reference samples) \
+ERRORS := $(addprefix tests/,baselines bounds cases packed_samples random reference samples unpack) \
     $(addprefix bench/,bench_work $(BASELINE_OBJECTS))
 
 $(BUILD)/baseline-errors: $(ERRORS:%=$(BUILD)/%.o) $(BUILD)/libfacet.a

@@ -44,27 +44,45 @@ OP vf3 octahedral(vf words)
     return scale3(n, 1.0f / vf_sqrt(dot(n, n)));
 }
 
-/* Towards the eye from the pixels of a batch's samples from the i-th on. A lane's row is the integer next to
- * (x + 1/2)/width - 1/2, exactly: what is rounded away of that is less than half of 1/width, as width <= PIXELS. */
-OP vf3 view_of_pixels(const facet_camera *camera, size_t i)
+/* Where the samples of a vector begin in a batch's rows. */
+typedef struct { size_t column, row; } camera_pixel;
+
+OP size_t row_length(const facet_camera *camera) { return camera->width ? camera->width : PIXELS; }
+
+OP camera_pixel pixel_of(const facet_camera *camera, size_t sample)
+{
+    const size_t width = row_length(camera);
+    return (camera_pixel){ sample % width, sample / width };
+}
+
+OP camera_pixel next_pixel(const facet_camera *camera, camera_pixel at)
+{
+    const size_t width = row_length(camera);
+    at.column += VF_LANES;
+    for (; at.column >= width; at.column -= width) at.row++;
+    return at;
+}
+
+/* Towards the eye from the pixels of a vector. A lane's row is the integer next to (x + 1/2)/width - 1/2, exactly: what
+ * is rounded away of that is less than half of 1/width, as width <= PIXELS. */
+OP vf3 view_of_pixels(const facet_camera *camera, camera_pixel at)
 {
     static const float lanes[16] = { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15 };
-    const size_t width = camera->width ? camera->width : PIXELS, row = i / width;
+    const size_t width = row_length(camera);
     const float inverse = 1.0f / (float)width;
-    vf x = splat((float)(i - row * width)) + vf_load(lanes);
+    vf x = splat((float)at.column) + vf_load(lanes);
     vf rows = vf_mad(x, splat(inverse), splat(0.5f * inverse - 0.5f)) + 0x1.8p23f - 0x1.8p23f;
     x = vf_nmad(rows, splat((float)width), x) + splat((float)camera->x);
-    vf y = rows + splat((float)(camera->y + row));
+    vf y = rows + splat((float)(camera->y + at.row));
     vf3 ray = mad3(splat3(camera->across), same3(x), mad3(splat3(camera->down), same3(y), splat3(camera->corner)));
     return scale3(ray, -1.0f / vf_sqrt(dot(ray, ray)));
 }
 
 OP vf load_words(const void *stream, size_t i) { return vf_load((const float *)stream + i); }
 
-/* A stream that comes packed: a vector from the i-th word on, of the batch's samples from `sample` on. */
-OP vf unpacked_1(uint32_t stream, const plan_fields *plan, const facet_packed *p, size_t i, size_t sample)
+/* A stream that comes packed in words: a vector from the i-th on. */
+OP vf unpacked_1(uint32_t stream, const plan_fields *plan, const facet_packed *p, size_t i)
 {
-    (void)sample;
     switch (stream) {
     case FACET_STREAM_ALPHA: return alpha_of_roughness(unorm8(load_words(p->albedo_roughness, i), 3));
     case FACET_STREAM_ROUGHNESS: return unorm8(load_words(p->albedo_roughness, i), 3);
@@ -73,12 +91,11 @@ OP vf unpacked_1(uint32_t stream, const plan_fields *plan, const facet_packed *p
     }
     return splat(0.0f);
 }
-OP vf3 unpacked_3(uint32_t stream, const plan_fields *plan, const facet_packed *p, size_t i, size_t sample)
+OP vf3 unpacked_3(uint32_t stream, const plan_fields *plan, const facet_packed *p, size_t i)
 {
     (void)plan;
     switch (stream) {
     case FACET_STREAM_NORMAL: return octahedral(load_words(p->normal, i));
-    case FACET_STREAM_VIEW: return view_of_pixels(p->camera, sample);
     case FACET_STREAM_ALBEDO:
     case FACET_STREAM_BASE: return unorm8_3(load_words(p->albedo_roughness, i));
     case FACET_STREAM_F0: return unorm8_3(load_words(p->f0_sigma, i));

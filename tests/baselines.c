@@ -2,7 +2,7 @@
  * library's kernels. Prints a table, which facet-bench reads. DIR: where accuracy.tsv is; tests. */
 #include "../bench/bench_work.h"
 #include "bounds.h"
-#include "samples.h"
+#include "packed_samples.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -186,6 +186,12 @@ static int by_error(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
 static void climb(const who *one, const work *w, test_random *random, found *at)
 {
     for (int i = 0; i < STEPS; i++) {
@@ -230,14 +236,60 @@ static void measure_one(const char *kind, const char *name, const who *one, cons
     printf("%s\t%s\t%s\t%.3g\t%.3g\n", kind, w->name, name, worst, p999);
 }
 
+/* ---- Packed streams ---------------------------------------------------------------------------------------------- */
+
+/* So many batches of random packed samples, without a search. */
+enum { PACKED_BATCHES = 100 };
+
+/* The library's worst architecture's, of a sample that was shaded by each. */
+static double packed_error(const facet_material *m, const packed_samples *shaded, int count, int i)
+{
+    const exact_sample *exact = &shaded->exact[i];
+    const sample s = rounded_sample(exact);
+    double want[3], radiance[3], magnitude[3], worst = 0;
+    reference_terms(m, &s, radiance, magnitude);
+    exact_radiance(exact, want);
+    for (int k = 0; k < count; k++)
+        for (int c = 0; c < 3; c++)
+            worst = fmax(worst, error_over_magnitude(shaded[k].radiance[c][i], want[c], magnitude[c],
+                                                     s.irradiance[c]));
+    return worst;
+}
+
+static void measure_packed(const who *one, const work *w, const char *tier)
+{
+    static packed_samples shaded[8];
+    static double usual[PACKED_BATCHES * PACKED_SAMPLES];
+    test_random random = { 2 };
+    double worst = 0;
+    int count = 0;
+    for (int batch = 0; batch < PACKED_BATCHES; batch++) {
+        draw_packed_samples(&random, &shaded[0]);
+        for (int k = 1; k < one->plan_count; k++) shaded[k] = shaded[0];
+        for (int k = 0; k < one->plan_count; k++)
+            if (shade_packed_samples(&one->plans[k], &shaded[k])) worst = INFINITY;
+        for (int i = 0; i < PACKED_SAMPLES; i++) {
+            const sample s = rounded_sample(&shaded[0].exact[i]);
+            if (!is_plain(&s)) continue;
+            const double error = packed_error(&w->material, shaded, one->plan_count, i);
+            worst = fmax(worst, error);
+            if (shaded[0].exact[i].usual) usual[count++] = error;
+        }
+    }
+    qsort(usual, (size_t)count, sizeof usual[0], by_size);
+    printf("kernel\t%s\t%s\t%.3g\t%.3g\n", w->name, tier, worst, usual[count - 1 - count / 1000]);
+}
+
 static void measure_all(const work *w)
 {
-    for (int i = 0; i < BASELINES; i++)
+    for (int i = 0; i < BASELINES && w->shade >= 0; i++)
         if (baselines[i]->shade[w->shade])
             measure_one("baseline", baselines[i]->name, &(who){ .baseline = baselines[i] }, w);
     for (int tier = 0; facet_word(FACET_KIND_TIER, tier); tier++) {
         const who one = library(w, (facet_tier)tier);
-        if (one.plan_count) measure_one("kernel", facet_word(FACET_KIND_TIER, tier), &one, w);
+        const char *word = facet_word(FACET_KIND_TIER, tier);
+        if (one.plan_count && w->format != FLOATS) measure_packed(&one, w, word);
+        else if (one.plan_count) measure_one("kernel", word, &one, w);
     }
 }
 
@@ -248,9 +300,11 @@ int main(int count, char **words)
     printf("# Errors of the baselines, and of the kernels found alike: written by baseline-errors.\n"
            "# |got - want|/magnitude (tests/reference.h) where nl, nv > 5e-4, alpha >= 0.01: the worst that a search\n"
            "# found, from random samples and the witnesses of accuracy.tsv on, and what 99.9 %% of %d random samples\n"
-           "# stay within, half of them uniform, half in the lobe.\n"
-           "# baseline\tworkload\tname\tworst\tp99.9\n# kernel\tworkload\ttier\tworst\tp99.9\n", SAMPLES);
+           "# stay within, half of them uniform, half in the lobe. Packed: of radiance before it is rounded to halves\n"
+           "# or pixels, against formulas in double of the packed numbers; of %d random samples, without a search.\n"
+           "# baseline\tworkload\tname\tworst\tp99.9\n# kernel\tworkload\ttier\tworst\tp99.9\n", SAMPLES,
+           PACKED_BATCHES * PACKED_SAMPLES);
     for (int i = 0; work_at(i); i++)
-        if (work_at(i)->title && !work_at(i)->frame) measure_all(work_at(i));
+        if (work_at(i)->title && !(work_at(i)->frame && work_at(i)->format == FLOATS)) measure_all(work_at(i));
     return ferror(stdout) || fflush(stdout) ? EXIT_FAILURE : EXIT_SUCCESS;
 }
