@@ -1,5 +1,5 @@
 /* Packed streams, once for every architecture and tier: facet_packed's formulas, a vector at a time. They become floats
- * a block at a time (shade.tmpl.h): where a kernel unpacked them itself it gained 7 %. Words are 32 bits of anything in
+ * a block at a time (block.tmpl.h): where a kernel unpacked them itself it gained 7 %. Words are 32 bits of anything in
  * a vf's lanes. */
 #ifndef FACET_PACKED_TMPL_H
 #define FACET_PACKED_TMPL_H
