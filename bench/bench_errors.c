@@ -102,6 +102,7 @@ bool errors_read(const char *files)
 found_error errors_of(const work *w, const char *who)
 {
     const row *searched = w->kernel ? find_row(w->kernel, who, true) : NULL;
-    const row *measured = find_row(w->shade == SHADE_TILE ? "tile" : w->name, who, false);
+    const char *name = w->shade == SHADE_TILE ? "tile" : w->format != FLOATS ? "packed" : w->name;
+    const row *measured = find_row(name, who, false);
     return searched ? searched->found : measured ? measured->found : (found_error){ NAN, NAN };
 }

@@ -180,7 +180,7 @@ static __attribute__((noinline)) size_t describe(const plan_fields *p, char *tex
     describe_specular(&w, p);
     describe_fit(&w, p);
     if (p->coupled) put(&w, "coupled: diffuse times 1 - F\n");
-    if (p->emission[0] + p->emission[1] + p->emission[2] > 0.0f) {
+    if (p->emits) {
         put_numbers(&w, "emission:", p->emission, 3);
         put(&w, "\n");
     }

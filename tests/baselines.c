@@ -305,6 +305,6 @@ int main(int count, char **words)
            "# baseline\tworkload\tname\tworst\tp99.9\n# kernel\tworkload\ttier\tworst\tp99.9\n", SAMPLES,
            PACKED_BATCHES * PACKED_SAMPLES);
     for (int i = 0; work_at(i); i++)
-        if (work_at(i)->title && !(work_at(i)->frame && work_at(i)->format == FLOATS)) measure_all(work_at(i));
+        if (work_at(i)->title && (!work_at(i)->frame || work_at(i)->format == HALVES)) measure_all(work_at(i));
     return ferror(stdout) || fflush(stdout) ? EXIT_FAILURE : EXIT_SUCCESS;
 }

@@ -111,7 +111,8 @@ frame() {
     grep -q '^peak	copy_memory	' "$work/frame.tsv"
 }
 
-# Packed streams have no baselines: a row for each tier and layout, and a ratio to frame's, which comes along.
+# Packed streams have no baselines: a row for each tier and layout, with errors, and a ratio to frame's, which comes
+# along.
 packed() {
     run "$work/packed.tsv" --filter packed --arch best
     none "malformed" "$(bad_rows "$work/packed.tsv")"
@@ -121,6 +122,7 @@ packed() {
         'packed-pixels strict 4194304 16'; do
         echo "2 $row -"
     done | diff "$work/rows" -
+    none "without an error" "$(awk -F '\t' '$2 ~ /^packed/ && !($16 > 0 && $17 > 0)' "$work/packed.tsv")"
     [ "$(awk -F '\t' '$2 == "frame" && $3 == "fast"' "$work/packed.tsv" | wc -l)" = 2 ]
     [ "$(grep -c ' x frame ' "$work/out")" = 2 ]
     awk '/^[a-z-]*:/ { beside = /^packed/ } beside && /fast|strict/ && NF > 9 && $8 > 0' "$work/out" >"$work/ratios"

@@ -8,7 +8,6 @@
 #include "targets.h"
 
 #include <math.h>
-#include <string.h>
 
 #define CASE "oren-nayar+ggx/smith-correlated/schlick/uncoupled"
 
