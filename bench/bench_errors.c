@@ -9,9 +9,10 @@
 
 enum { MOST_ROWS = 1024, MOST_FIELDS = 40, PATH = 4096 };
 
-/* `searched`: a kernel of tests/accuracy.tsv, whose worst is its bound times what the witness reached. */
+/* `searched`: a kernel of tests/accuracy.tsv, of its worst architecture, whose worst is its bound times what the
+ * witness reached. */
 typedef struct {
-    char name[64], who[16];
+    char name[64], who[16], arch[16];
     bool searched;
     double bound;
     found_error found;
@@ -20,22 +21,27 @@ typedef struct {
 static row rows[MOST_ROWS];
 static int row_count;
 
-static row *find_row(const char *name, const char *who, bool searched)
+static row *find_row(const char *name, const char *who, const char *arch, bool searched)
 {
     for (int i = 0; i < row_count; i++)
-        if (!strcmp(rows[i].name, name) && !strcmp(rows[i].who, who) && rows[i].searched == searched) return &rows[i];
+        if (!strcmp(rows[i].name, name) && !strcmp(rows[i].who, who) && !strcmp(rows[i].arch, arch)
+            && rows[i].searched == searched)
+            return &rows[i];
     return NULL;
 }
 
-static row *make_row(const char *name, const char *who, bool searched)
+static row *make_row(const char *name, const char *who, const char *arch, bool searched)
 {
-    row *r = find_row(name, who, searched);
+    row *r = find_row(name, who, arch, searched);
     if (r) return r;
-    if (row_count == MOST_ROWS || strlen(name) >= sizeof r->name || strlen(who) >= sizeof r->who) return NULL;
+    if (row_count == MOST_ROWS || strlen(name) >= sizeof r->name || strlen(who) >= sizeof r->who
+        || strlen(arch) >= sizeof r->arch)
+        return NULL;
     r = &rows[row_count++];
     *r = (row){ .searched = searched, .found = { NAN, NAN } };
     strcpy(r->name, name);
     strcpy(r->who, who);
+    strcpy(r->arch, arch);
     return r;
 }
 
@@ -51,12 +57,13 @@ static bool read_fields(char **field, int count)
 {
     if (count < 5) return false;
     const bool bound = !strcmp(field[0], "bound"), witness = !strcmp(field[0], "witness");
-    const bool measured = !strcmp(field[0], "baseline") || !strcmp(field[0], "kernel");
-    row *r = make_row(field[1], field[2], !measured);
+    const bool kernel = !strcmp(field[0], "kernel"), measured = kernel || !strcmp(field[0], "baseline");
+    row *r = make_row(field[1], field[2], kernel ? field[3] : "", !measured);
     if (!r) return false;
     if (bound) return count == 8 && read_number_of(field[6], &r->bound) && read_number_of(field[7], &r->found.p999);
     if (measured)
-        return count == 5 && read_number_of(field[3], &r->found.worst) && read_number_of(field[4], &r->found.p999);
+        return count == 5 + kernel && read_number_of(field[3 + kernel], &r->found.worst)
+               && read_number_of(field[4 + kernel], &r->found.p999);
     if (!witness || strcmp(field[3], "plain")) return witness;
     double reached;
     if (!read_number_of(field[4], &reached)) return false;
@@ -99,10 +106,10 @@ bool errors_read(const char *files)
     return true;
 }
 
-found_error errors_of(const work *w, const char *who)
+found_error errors_of(const work *w, const char *who, const char *arch)
 {
-    const row *searched = w->kernel ? find_row(w->kernel, who, true) : NULL;
+    const row *searched = w->kernel ? find_row(w->kernel, who, "", true) : NULL;
     const char *name = w->shade == SHADE_TILE ? "tile" : w->format != FLOATS ? "packed" : w->name;
-    const row *measured = find_row(name, who, false);
+    const row *measured = find_row(name, who, arch, false);
     return searched ? searched->found : measured ? measured->found : (found_error){ NAN, NAN };
 }

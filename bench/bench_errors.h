@@ -11,7 +11,7 @@ typedef struct { double worst, p999; } found_error;
 /* Reads tables, given with commas. A file that is not there is left out, and said. False where one is malformed. */
 bool errors_read(const char *files);
 
-/* Of the library's tier, or of a baseline by its name. */
-found_error errors_of(const work *w, const char *who);
+/* Of the library's tier on an architecture, or of a baseline by its name, `arch` being empty. */
+found_error errors_of(const work *w, const char *who, const char *arch);
 
 #endif

@@ -112,8 +112,8 @@ void bench_options_help(void)
            "Errors\n"
            "  Relative (tests/reference.h), where nl and nv are above 5e-4 and alpha is at least 0.01: the worst that\n"
            "  a search has found, and what 99.9 %% of random samples stay within. Of the library from\n"
-           "  tests/accuracy.tsv; of baselines, and of what has no row there, from build/baselines.tsv, where the\n"
-           "  search begins at the worst of accuracy.tsv. Of packed streams, before radiance is rounded: of random\n"
-           "  samples alone.\n",
+           "  tests/accuracy.tsv, the worst of its architectures'; of baselines, and of what has no row there, each\n"
+           "  architecture's from build/baselines.tsv, where the search begins at the worst of accuracy.tsv. Of\n"
+           "  packed streams, before radiance is rounded: of random samples alone.\n",
            BOUND_QUOTIENT, BOUND_ROOT);
 }

@@ -70,7 +70,8 @@ static const contender *beside(const contenders *all, const contender *c)
 static void fill_row(result *r, const contender *c, const contender *const rivals[FASTER], const contender *other)
 {
     const facet_arch arch = c->baseline ? machine_arch(c->baseline->bits) : c->target.arch;
-    const found_error e = errors_of(c->work, c->baseline ? c->baseline->name : tier_of(c));
+    const found_error e = c->baseline ? errors_of(c->work, c->baseline->name, "")
+                                      : errors_of(c->work, tier_of(c), arch_of(c));
     bound_by by;
     *r = (result){ .size = sizes[c->size], .ns = series_median(&c->ns), .spread = series_spread(&c->ns),
                    .cycles = series_median(&c->cycles), .fraction = series_median(&c->fraction),
