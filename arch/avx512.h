@@ -29,6 +29,9 @@ OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }
 OP vf vf_min(vf a, vf b) { return _mm512_min_ps(a, b); }
 OP vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
+OP vf vf_at_least(vf a, vf low) { return vf_max(low, a); }
+OP vf vf_at_most(vf a, vf high) { return vf_min(high, a); }
+OP vf vf_not_negative(vf a) { return vf_max(a, vf_splat(0.0f)); }
 OP vf vf_abs(vf a) { return _mm512_andnot_ps(_mm512_set1_ps(-0.0f), a); }
 OP vf vf_flip(vf a, vf s) { return _mm512_xor_ps(a, _mm512_and_ps(s, _mm512_set1_ps(-0.0f))); }
 
@@ -52,6 +55,7 @@ OP vf vf_or(vf a, vf b) { return _mm512_or_ps(a, b); }
 OP vf vf_shift_left(vf a, int n) { return (vf)((vf_bits)a << n); }
 OP vf vf_shift_right(vf a, int n) { return (vf)((vf_bits)a >> n); }
 OP uint32_t vf_signs(vf a) { return _mm512_movepi32_mask(_mm512_castps_si512(a)); }
+OP uint32_t vf_any_sign(vf a) { return vf_signs(a); }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ) }; }

@@ -43,6 +43,9 @@ OP vf vf_div(vf a, vf b)
 OP vf vf_sqrt(vf a) { return vsqrtq_f32(a); }
 OP vf vf_min(vf a, vf b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
 OP vf vf_max(vf a, vf b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
+OP vf vf_at_least(vf a, vf low) { return vmaxq_f32(a, low); }
+OP vf vf_at_most(vf a, vf high) { return vminq_f32(a, high); }
+OP vf vf_not_negative(vf a) { return vmaxnmq_f32(a, vdupq_n_f32(0.0f)); }
 OP vf vf_abs(vf a) { return vabsq_f32(a); }
 OP vf vf_flip(vf a, vf s)
 {
@@ -77,6 +80,7 @@ OP uint32_t vf_signs(vf a)
     static const int32_t place[4] = { 0, 1, 2, 3 };
     return vaddvq_u32(vshlq_u32(vshrq_n_u32(vreinterpretq_u32_f32(a), 31), vld1q_s32(place)));
 }
+OP uint32_t vf_any_sign(vf a) { return vmaxvq_u32(vreinterpretq_u32_f32(a)) >> 31; }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ vcltq_f32(a, b) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ vceqq_f32(a, b) }; }

@@ -41,6 +41,14 @@ OP vf vf_min(vf a, vf b) { return a < b ? a : b; }
 OP vf vf_max(vf a, vf b) { return a > b ? a : b; }
 OP vf vf_abs(vf a) { return __builtin_fabsf(a); }
 
+/* The larger of a and low, the smaller of a and high, which are no NaN; a NaN in a stays one. Of two zeros it is
+ * either: what they limit must not show a zero's sign. */
+OP vf vf_at_least(vf a, vf low) { return vf_max(low, a); }
+OP vf vf_at_most(vf a, vf high) { return vf_min(high, a); }
+
+/* a where it is > 0, else 0; of a signalling NaN either 0 or NaN. */
+OP vf vf_not_negative(vf a) { return vf_max(a, vf_splat(0.0f)); }
+
 /* a with its sign turned where s has one. */
 OP vf vf_flip(vf a, vf s) { return __builtin_signbit(s) ? -a : a; }
 
@@ -55,7 +63,7 @@ OP vf vf_nmad(vf a, vf b, vf c) { return c - a * b; }
 
 /* On the bits: the one of a and b whose bits, as an unsigned number, are larger (negatives, infinities and NaN beat
  * all); the bits of a less those of b; the bits that either has; the bits of a, moved by a constant n of 0 to 31, zeros
- * behind them. vf_signs: bit k is the sign of lane k. */
+ * behind them. vf_signs: bit k is the sign of lane k; vf_any_sign: not 0 where a lane has one. */
 typedef union { float f; uint32_t u; } float_bits;
 OP uint32_t bits_of(vf a) { return ((float_bits){ .f = a }).u; }
 OP vf from_bits(uint32_t u) { return ((float_bits){ .u = u }).f; }
@@ -65,6 +73,7 @@ OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
 OP vf vf_shift_left(vf a, int n) { return from_bits(bits_of(a) << n); }
 OP vf vf_shift_right(vf a, int n) { return from_bits(bits_of(a) >> n); }
 OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
+OP uint32_t vf_any_sign(vf a) { return vf_signs(a); }
 
 /* IEEE 754 binary16 of 0 <= a <= 65504, to nearest, ties to even; addresses have a uint16_t's alignment. Below 2^-14
  * the last place of a + 1/2 is that of the least half. */

@@ -39,6 +39,9 @@ OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
 OP vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
 OP vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
+OP vf vf_at_least(vf a, vf low) { return vf_max(low, a); }
+OP vf vf_at_most(vf a, vf high) { return vf_min(high, a); }
+OP vf vf_not_negative(vf a) { return vf_max(a, vf_splat(0.0f)); }
 OP vf vf_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
 OP vf vf_flip(vf a, vf s) { return _mm_xor_ps(a, _mm_and_ps(s, _mm_set1_ps(-0.0f))); }
 
@@ -60,6 +63,7 @@ OP vf vf_or(vf a, vf b) { return _mm_or_ps(a, b); }
 OP vf vf_shift_left(vf a, int n) { return (vf)((vf_bits)a << n); }
 OP vf vf_shift_right(vf a, int n) { return (vf)((vf_bits)a >> n); }
 OP uint32_t vf_signs(vf a) { return (uint32_t)_mm_movemask_ps(a); }
+OP uint32_t vf_any_sign(vf a) { return vf_signs(a); }
 
 OP vm vf_lt(vf a, vf b) { return (vm){ _mm_cmplt_ps(a, b) }; }
 OP vm vf_eq(vf a, vf b) { return (vm){ _mm_cmpeq_ps(a, b) }; }

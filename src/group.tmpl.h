@@ -64,8 +64,8 @@ OP vf load(const group *g, bool dense, int component, int k)
  * one, a constant at every level of optimisation. */
 OP vf in_domain(vf a, float low, float high, bool bounded)
 {
-    if (low > -FLT_MAX) a = vf_max(splat(low), a);
-    if (bounded) a = vf_min(splat(high), a);
+    if (low > -FLT_MAX) a = vf_at_least(a, splat(low));
+    if (bounded) a = vf_at_most(a, splat(high));
     return a;
 }
 #define BOUNDED(high) (!(__builtin_constant_p(high) && (high) == FLT_MAX))
@@ -182,13 +182,14 @@ OP vf reach(const facet_light *light, vf r2, vf inverse)
     vf arrives = square(inverse);
     if (!(light->range > 0.0f)) return arrives;
     vf q2 = square(r2 * inverse / splat(light->range));
-    return arrives * square(not_negative(1.0f - square(q2)));
+    return arrives * square(vf_not_negative(1.0f - square(q2)));
 }
 
 /* Smoothstep of the angle's cosine between the cones. */
 OP vf cone(const facet_light *light, vf3 l)
 {
-    vf c = -dot(l, splat3(light->axis)), width = vf_max(splat(TINY), splat(light->cos_inner) - splat(light->cos_outer));
+    vf c = -dot(l, splat3(light->axis));
+    vf width = vf_at_least(splat(light->cos_inner) - splat(light->cos_outer), splat(TINY));
     vf t = clamp((c - splat(light->cos_outer)) / width, 0.0f, 1.0f);
     t = vf_select(vf_lt(c, splat(light->cos_inner)), t, splat(1.0f));
     return square(t) * (3.0f - 2.0f * t);
@@ -244,8 +245,8 @@ OP void face(const group *g, features x, incidence *t)
     if (x.two_sided) EACH(k) t[k].nl = vf_flip(t[k].nl, g->nv[k]);
     EACH(k) {
         vf nv = x.two_sided ? vf_abs(g->nv[k]) : g->nv[k];
-        t[k].nl = vf_where(vf_lt(splat(0.0f), nv), vf_max(splat(0.0f), t[k].nl)) + (nv - nv);
-        t[k].nv = vf_max(splat(TINY), nv);
+        t[k].nl = vf_where(vf_lt(splat(0.0f), nv), vf_at_least(t[k].nl, splat(0.0f))) + (nv - nv);
+        t[k].nv = vf_at_least(nv, splat(TINY));
     }
 }
 

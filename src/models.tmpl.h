@@ -36,9 +36,8 @@ OP vf3 cross(vf3 a, vf3 b)
 
 OP vf pow5(vf a) { vf a2 = a * a; return a2 * a2 * a; }
 
-OP vf not_negative(vf a) { return vf_max(a, splat(0.0f)); }
-OP vf at_least_0(vf a) { return vf_max(splat(0.0f), a); }        /* the same, but a NaN stays one */
-OP vf3 not_negative3(vf3 a) { return (vf3){ not_negative(a.x), not_negative(a.y), not_negative(a.z) }; }
+OP vf at_least_0(vf a) { return vf_at_least(a, splat(0.0f)); }   /* of NaN a NaN */
+OP vf3 not_negative3(vf3 a) { return (vf3){ vf_not_negative(a.x), vf_not_negative(a.y), vf_not_negative(a.z) }; }
 OP vf clamp(vf a, float low, float high) { return vf_min(vf_max(a, splat(low)), splat(high)); }
 OP vf3 clamp3(vf3 a, float low, float high)
 {
@@ -46,7 +45,7 @@ OP vf3 clamp3(vf3 a, float low, float high)
 }
 
 /* The same, but a NaN stays one. */
-OP vf within(vf a, float low, float high) { return vf_min(splat(high), vf_max(splat(low), a)); }
+OP vf within(vf a, float low, float high) { return vf_at_most(vf_at_least(a, splat(low)), splat(high)); }
 
 /* What follows from sigma alone; a model gives each its meaning. */
 typedef struct { vf A, B, C, D; } terms;
@@ -91,7 +90,7 @@ OP vf3 diffuse_lambert(surface s, incidence i, vf3 plus) { return mad3(s.albedo,
 OP vf3 oren_nayar(surface s, incidence i, vf3 plus)
 {
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
-    vf sin_tan = vf_div(not_negative(s0), vf_max(i.nl, i.nv));
+    vf sin_tan = vf_div(vf_not_negative(s0), vf_max(i.nl, i.nv));
     return mad3(s.albedo, same3(i.nl * vf_mad(s.terms.B, sin_tan, s.terms.A)), plus);
 }
 
@@ -118,10 +117,10 @@ OP terms terms_oren_nayar_57(vf sigma) { return oren_nayar_terms(sigma, 0.57f); 
 OP vf3 oren_nayar_1994(surface s, incidence i, vf3 plus, bool interreflection)
 {
     vf cos_a = vf_min(i.nl, i.nv), cos_b = vf_max(i.nl, i.nv);
-    vf sin_a = vf_sqrt(not_negative(1.0f - square(cos_a))), sin_b = vf_sqrt(not_negative(1.0f - square(cos_b)));
+    vf sin_a = vf_sqrt(vf_not_negative(1.0f - square(cos_a))), sin_b = vf_sqrt(vf_not_negative(1.0f - square(cos_b)));
     vf a = arccos(cos_a) * (2.0f * INV_PI), b = arccos(cos_b) * (2.0f * INV_PI), b2 = square(b);
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
-    vf cos_phi = clamp(vf_div(s0, vf_max(splat(TINY), sin_a * sin_b)), -1.0f, 1.0f);
+    vf cos_phi = clamp(vf_div(s0, vf_at_least(sin_a * sin_b, splat(TINY))), -1.0f, 1.0f);
 
     vf opposed = vf_min(cos_phi, splat(0.0f)) * (b * b2) * sin_b;
     vf C2 = (s0 - opposed) * vf_div(i.nl, cos_b);
@@ -158,7 +157,7 @@ OP vf fujii(surface s, incidence i)
 {
     vf s0 = vf_nmad(i.nl, i.nv, i.vl);
     vf t = vf_select(vf_lt(splat(0.0f), s0), vf_max(i.nl, i.nv), splat(1.0f));
-    return i.nl * not_negative(vf_mad(s.terms.B, vf_div(s0, t), s.terms.A));
+    return i.nl * vf_not_negative(vf_mad(s.terms.B, vf_div(s0, t), s.terms.A));
 }
 OP vf3 diffuse_fujii(surface s, incidence i, vf3 plus) { return mad3(s.albedo, same3(fujii(s, i)), plus); }
 
@@ -172,7 +171,7 @@ OP vf eon_missing(vf mu)
     vf x = 1.0f - mu;
     vf G = x * vf_mad(x, vf_mad(x, vf_mad(x, splat(0.0714429953f), splat(-0.332181442f)), splat(0.491881867f)),
                       splat(0.0571085289f));
-    return not_negative(0.287793409f - G);
+    return vf_not_negative(0.287793409f - G);
 }
 
 OP vf3 diffuse_eon(surface s, incidence i, vf3 plus)
@@ -202,7 +201,7 @@ OP vf distribution_none(surface s, incidence i) { (void)s, (void)i; return splat
  * From the vectors, without 1 - nh^2: q = alpha hh/(|n x w|^2 + alpha^2 (n.w)^2), D = q^2/pi. */
 OP vf distribution_ggx(surface s, incidence i)
 {
-    vf q = vf_div(s.alpha * i.hh, vf_max(splat(TINY), vf_mad(s.alpha2, square(i.nw), i.nxw2)));
+    vf q = vf_div(s.alpha * i.hh, vf_at_least(vf_mad(s.alpha2, square(i.nw), i.nxw2), splat(TINY)));
     return square(q);
 }
 
@@ -217,7 +216,7 @@ OP vf distribution_ggx_anisotropic(surface s, incidence i)
     across w = across_of(s, add3(s.v, i.l));
     vf area = s.alpha * s.alpha_y;
     vf slope = vf_mad(s.alpha_y * w.x, s.alpha_y * w.x, square(s.alpha * w.y));
-    vf q = vf_div(area * i.hh, vf_max(splat(TINY), vf_mad(area * i.nw, area * i.nw, slope)));
+    vf q = vf_div(area * i.hh, vf_at_least(vf_mad(area * i.nw, area * i.nw, slope), splat(TINY)));
     return area * square(q);
 }
 
@@ -231,7 +230,7 @@ OP vf beckmann(vf tan2, vf slope, vf area)
 /* Beckmann 1963; Cook and Torrance 1981: D = exp(-tan^2/alpha^2)/(pi alpha^2 nh^4), tan^2 = |n x w|^2/(n.w)^2. */
 OP vf distribution_beckmann(surface s, incidence i)
 {
-    vf tan2 = vf_div(i.nxw2, vf_max(splat(TINY), square(i.nw)));
+    vf tan2 = vf_div(i.nxw2, vf_at_least(square(i.nw), splat(TINY)));
     return beckmann(tan2, vf_div(tan2, s.alpha2), s.alpha2);
 }
 
@@ -239,7 +238,7 @@ OP vf distribution_beckmann(surface s, incidence i)
 OP vf distribution_beckmann_anisotropic(surface s, incidence i)
 {
     across w = across_of(s, add3(s.v, i.l));
-    vf nw2 = vf_max(splat(TINY), square(i.nw));
+    vf nw2 = vf_at_least(square(i.nw), splat(TINY));
     vf slope = square(vf_div(w.x, s.alpha)) + square(vf_div(w.y, s.alpha_y));
     return beckmann(vf_div(vf_mad(w.x, w.x, square(w.y)), nw2), vf_div(slope, nw2), s.alpha * s.alpha_y);
 }
@@ -247,7 +246,7 @@ OP vf distribution_beckmann_anisotropic(surface s, incidence i)
 /* cos^exponent, of tan^2 = sin2/cos2: cos near 1 has lost what exponent ln(cos) needs, tan^2 has not. */
 OP vf lobe(surface s, vf sin2, vf cos2)
 {
-    return exp_minus(0.5f * s.exponent * log1p_ratio(sin2, vf_max(splat(TINY), cos2)));
+    return exp_minus(0.5f * s.exponent * log1p_ratio(sin2, vf_at_least(cos2, splat(TINY))));
 }
 
 /* Phong 1975: (r.v)^exponent, r = 2 nl n - l, 0 where r.v <= 0. */
@@ -283,7 +282,7 @@ typedef struct { vf l, v; } slopes;
 
 OP slopes isotropic(surface s, incidence i)
 {
-    return (slopes){ s.alpha2 * not_negative(1.0f - square(i.nl)), s.alpha2 * not_negative(1.0f - square(i.nv)) };
+    return (slopes){ s.alpha2 * vf_not_negative(1.0f - square(i.nl)), s.alpha2 * vf_not_negative(1.0f - square(i.nv)) };
 }
 
 /* Heitz 2014, eq. 80: alpha tan is that of the direction's azimuth. */
@@ -295,10 +294,10 @@ OP vf slope_along(surface s, vf3 a)
 OP slopes anisotropic(surface s, incidence i) { return (slopes){ slope_along(s, i.l), slope_along(s, s.v) }; }
 
 /* G = G1(nl) G1(nv); Heitz 2014, eq. 99: G = 1/(1 + Lambda(nl) + Lambda(nv)). l and v: mu/G1 for nl and nv. */
-OP vf separable(incidence i, vf l, vf v) { return 0.25f * i.nl / vf_max(splat(TINY), l * v); }
+OP vf separable(incidence i, vf l, vf v) { return 0.25f * i.nl / vf_at_least(l * v, splat(TINY)); }
 OP vf correlated(incidence i, vf l, vf v)
 {
-    return 0.25f * i.nl / vf_max(splat(TINY), vf_mad(l, i.nv, i.nl * (v - i.nv)));
+    return 0.25f * i.nl / vf_at_least(vf_mad(l, i.nv, i.nl * (v - i.nv)), splat(TINY));
 }
 
 /* GGX: Lambda = (-1 + sqrt(1 + alpha^2 tan^2))/2, mu/G1 = (mu + sqrt(mu^2 + y^2))/2. */
@@ -309,7 +308,7 @@ OP vf ggx(vf mu, vf y2) { return 0.5f * (mu + vf_sqrt(vf_mad(mu, mu, y2))); }
 OP vf walter(vf mu, vf y2)
 {
     vf y = vf_sqrt(y2), over = vf_mad(splat(3.535f), y, 2.181f * mu);
-    vf h = vf_mad(mu, vf_mad(splat(2.577f), mu, 2.276f * y), y2) / vf_max(splat(TINY), over);
+    vf h = vf_mad(mu, vf_mad(splat(2.577f), mu, 2.276f * y), y2) / vf_at_least(over, splat(TINY));
     return vf_select(vf_lt(mu, 1.6f * y), vf_max(h, mu), mu);
 }
 
@@ -318,7 +317,7 @@ OP vf walter(vf mu, vf y2)
 OP vf smith_exact(vf mu, vf y2)
 {
     vf y = vf_sqrt(y2);
-    return vf_mad(y, ierfc_half(mu / vf_max(splat(TINY), y)), mu);
+    return vf_mad(y, ierfc_half(mu / vf_at_least(y, splat(TINY))), mu);
 }
 
 #define SMITH(name, how, shadow, spread)                                                                              \
@@ -362,7 +361,7 @@ OP vf visibility_smith_ggx(surface s, incidence i)
 OP vf v_cavity(surface s, incidence i)
 {
     (void)s;
-    vf inverse = 1.0f / i.nv, near = vf_abs(i.nw) / vf_max(splat(TINY), i.hh);
+    vf inverse = 1.0f / i.nv, near = vf_abs(i.nw) / vf_at_least(i.hh, splat(TINY));
     return vf_min(0.25f * inverse, near * (vf_min(i.nl, i.nv) * inverse));
 }
 #define visibility_v_cavity_ggx v_cavity
@@ -399,7 +398,7 @@ OP vf3 fresnel_constant(surface s, incidence i, vf weight) { (void)i; return sca
 /* 1 - vh, below 0 by rounding alone, or where vectors are far from unit length. */
 OP vf one_minus_vh(incidence i)
 {
-    return vf_min(splat(1.0f), vf_abs(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f))));
+    return vf_at_most(vf_abs(vf_nmad(splat(0.5f), vf_sqrt(i.hh), splat(1.0f))), splat(1.0f));
 }
 
 /* Schlick 1994: F = f0 + (f90 - f0)(1 - vh)^5. */
@@ -431,10 +430,10 @@ OP vf3 fresnel_schlick_f82(surface s, incidence i, vf weight)
 OP vf dielectric(vf eta, vf o, vf c, vf parallel)
 {
     vf oc = o * c, m = (eta - o) * (eta + o), g2 = vf_mad(oc, oc, m);
-    vf sum = vf_max(splat(TINY), vf_sqrt(not_negative(g2)) + oc), difference = m / sum;
+    vf sum = vf_at_least(vf_sqrt(vf_not_negative(g2)) + oc, splat(TINY)), difference = m / sum;
     vf p = vf_mad(c, sum, -o) / vf_mad(c, difference, o);
     vf F = square(difference / sum) * vf_mad(parallel, square(p), 1.0f - parallel);
-    return vf_select(vf_lt(g2, splat(0.0f)), splat(1.0f), vf_min(splat(1.0f), F));
+    return vf_select(vf_lt(g2, splat(0.0f)), splat(1.0f), vf_at_most(F, splat(1.0f)));
 }
 OP vf3 fresnel_dielectric(surface s, incidence i, vf weight)
 {
@@ -455,17 +454,17 @@ OP vf conductor(vf eta, vf k, vf o, vf c, vf parallel)
     vf oc = o * c, sin2 = (1.0f - c) * (1.0f + c);
     vf X = square(oc), Y = vf_nmad(k, k, (eta - o) * (eta + o)), t = X + Y, ek2 = square(eta * k);
     vf root = vf_sqrt(vf_mad(t, t, 4.0f * ek2)), larger = 0.5f * (root + vf_abs(t));
-    vf smaller = ek2 / vf_max(splat(TINY), larger);
+    vf smaller = ek2 / vf_at_least(larger, splat(TINY));
     vm above = vf_lt(splat(0.0f), t);
     vf a = vf_sqrt(vf_select(above, larger, smaller)), b2 = vf_select(above, smaller, larger);
 
-    vf sum = a + oc, cancelled = 2.0f * vf_mad(X, Y, ek2) / vf_max(splat(TINY), (root + (X - Y)) * sum);
+    vf sum = a + oc, cancelled = 2.0f * vf_mad(X, Y, ek2) / vf_at_least((root + (X - Y)) * sum, splat(TINY));
     vf difference = vf_select(vf_lt(Y, X), cancelled, a - oc);
-    vf Rs = vf_mad(difference, difference, b2) / vf_max(splat(TINY), vf_mad(sum, sum, b2));
+    vf Rs = vf_mad(difference, difference, b2) / vf_at_least(vf_mad(sum, sum, b2), splat(TINY));
 
     vf steep = o * sin2, bc2 = b2 * square(c), minus = vf_mad(a, c, -steep), plus = vf_mad(a, c, steep);
-    vf ratio = vf_mad(minus, minus, bc2) / vf_max(splat(TINY), vf_mad(plus, plus, bc2));
-    return vf_min(splat(1.0f), Rs * vf_mad(parallel, ratio, 1.0f - parallel));
+    vf ratio = vf_mad(minus, minus, bc2) / vf_at_least(vf_mad(plus, plus, bc2), splat(TINY));
+    return vf_at_most(Rs * vf_mad(parallel, ratio, 1.0f - parallel), splat(1.0f));
 }
 OP vf3 fresnel_conductor(surface s, incidence i, vf weight)
 {

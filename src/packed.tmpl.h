@@ -39,7 +39,7 @@ OP vf snorm16_32767(vf words, int index)
 OP vf3 octahedral(vf words)
 {
     vf x = snorm16_32767(words, 0), y = snorm16_32767(words, 1), z = 32767.0f - vf_abs(x) - vf_abs(y);
-    vf folded = not_negative(-z);
+    vf folded = vf_not_negative(-z);
     vf3 n = { x - vf_flip(folded, x), y - vf_flip(folded, y), z };
     return scale3(n, 1.0f / vf_sqrt(dot(n, n)));
 }

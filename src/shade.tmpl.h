@@ -50,12 +50,18 @@ OP group open_group(const job *j, features x, const block *b, size_t at)
     return g;
 }
 
+_Static_assert(VECTORS <= 2, "is_odd looks at the first vector and the last");
+
 /* Whether the group must be mended before it can be written. */
 OP bool is_odd(const group *g, features x, const vf *odd)
 {
-    uint32_t mend = 0;
-    EACH(k) mend |= vf_signs(vf_or(odd[k], above(largest(g->sum[k]), FLT_MAX)));
-    return __builtin_expect(mend && !g->mended, 0);
+    const int last = x.vectors - 1;
+    vf most = largest(g->sum[0]), any = odd[0];
+    if (last) {
+        most = vf_bits_max(most, largest(g->sum[last]));
+        any = vf_or(any, odd[last]);
+    }
+    return __builtin_expect(vf_any_sign(vf_or(any, above(most, FLT_MAX))) && !g->mended, 0);
 }
 
 /* Samples that a light or the destination made invalid: how many, and a bit for each of the last group's. */
@@ -83,7 +89,8 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, inval
 }
 
 /* The same for one plain light. VF_AHEAD: how it meets a group is found beside what the group before reflects, so that
- * one's arithmetic fills the other's latencies. */
+ * one's arithmetic fills the other's latencies. A copy of the pointers: what is stored cannot change it, so that they
+ * stay in registers or on the stack; two vectors side by side leave too few. */
 OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
 {
     const size_t end = covered_end(b, at), step = (size_t)x.vectors * VF_LANES;
@@ -94,7 +101,13 @@ OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
 
     EACH(k) l[k] = splat3(light->direction);
     EACH(k) E[k] = scale3(splat3(light->irradiance), splat(INV_PI));
-    group g = open_group(j, x, b, at), h = g;
+    const float *component[COMPONENT_COUNT];
+    float *radiance[3];
+    for (int c = 0; c < COMPONENT_COUNT; c++) component[c] = b->component[c];
+    for (int c = 0; c < 3; c++) radiance[c] = b->radiance[c];
+    group g = open_group(j, x, b, at), h;
+    if (x.vectors == 1) g.component = component;
+    h = g;
     if (VF_AHEAD) {
         look(&g, x);
         meet(&g, x, l, t);
@@ -109,7 +122,7 @@ OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
         reflect(&g, x, t, g.sum);
         EACH(k) g.sum[k] = mul3(g.sum[k], E[k]);
         if (is_odd(&g, x, odd)) break;
-        store(&g, x, false, b->radiance, at);
+        store(&g, x, false, x.vectors == 1 ? radiance : b->radiance, at);
         g.at = VF_AHEAD ? h.at : g.at + step;
         if (VF_AHEAD) EACH(k) t[k] = next[k];
     }
@@ -190,7 +203,7 @@ static __attribute__((noinline)) size_t shade_any(const job *j, const block *b, 
     {                                                                                                                 \
         (void)invalid;                                                                                                \
         if (!NEEDS_VIEW_##name && !(j->given & FACET_STREAM_VIEW)) return loop_##name(j, b, at, 0, 1);                \
-        if ((wide_) && VF_INTERLEAVE_WIDE > 1)                                                                        \
+        if ((wide_) & VF_LANES && VF_INTERLEAVE_WIDE > 1)                                                             \
             at = loop_##name(j, b, at, FACET_STREAM_VIEW, VF_INTERLEAVE_WIDE);                                        \
         return loop_##name(j, b, at, FACET_STREAM_VIEW, 1);                                                           \
     }
@@ -239,8 +252,8 @@ static __attribute__((noinline)) void mend_component(const job *j, const block *
     }
     EVERY(k) {
         vf a = vf_load(from + k * VF_LANES);
-        vf inside = low > -FLT_MAX ? vf_max(splat(low), a) : a;
-        if (high < FLT_MAX) inside = vf_min(splat(high), inside);
+        vf inside = low > -FLT_MAX ? vf_at_least(a, splat(low)) : a;
+        if (high < FLT_MAX) inside = vf_at_most(inside, splat(high));
         is_finite[k] = is_finite[k] + (inside - inside);
         vf_store(values + k * VF_LANES, clamp(a, low, high));
     }

@@ -85,39 +85,54 @@ instructions() {
 
 # ---- Cycles: the loop over whole groups, every stream per sample, by itself ------------------------------------------
 
-# From objdump's text on stdin, to DIR/NAME.s for each plain_NAME: the backward jump's span in which something is
-# divided, or at least multiplied, and results are stored, a vector of each channel: the shortest for a vector. Prints
-# "NAME VECTORS INSTRUCTIONS", 0 0 where none is.
+# vectors_of ARCH LANES: "NAME VECTORS" of each row of src/special.def, VECTORS side by side.
+vectors_of() {
+    awk -F '[(,)]' -v lanes="$2" -v most="$(sed -n 's/^#define VF_INTERLEAVE_WIDE //p' "arch/$1.h")" '
+        /^FACET_SPECIAL/ {
+            vectors = 1
+            n = split($(NF - 1), wide, "|")
+            for (i = 1; i <= n; i++) if (wide[i] + 0 == lanes && most) vectors = most
+            print $2, vectors
+        }' src/special.def
+}
+
+# loops DIR VECTORS: from objdump's text on stdin, to DIR/NAME.s for each plain_NAME: the shortest backward jump's span
+# in which something is divided, or at least multiplied, and as many vectors of each channel are stored as the file
+# VECTORS says. Prints "NAME VECTORS INSTRUCTIONS", 0 instructions where none is.
 loops() {
-    awk -F'\t' -v dir="$1" '
+    awk -F'\t' -v dir="$1" -v table="$2" '
         function store(text) {
             return text ~ /^v?movups +%[xyz]mm[0-9]+,.*\)$/ && text !~ /\(%rsp/ || text ~ /^str +q/ && text !~ /\[sp/
         }
         # Sets where it begins; returns its length.
-        function shortest(work,  i, j, n, stored, least, vectors) {
+        function shortest(work,  i, j, n, least) {
             least = 0
             for (i = 1; i <= count; i++) {
                 j = to[i] in place ? place[to[i]] : count
                 n = i - j + 1
-                stored = stores[i] - stores[j - 1]
-                if (j >= i || work[i] == work[j - 1] || stored < 3) continue
-                if (least && least / vectors <= n / stored) continue
+                if (j >= i || work[i] == work[j - 1] || stores[i] - stores[j - 1] != 3 * vectors[name]) continue
+                if (least && least <= n) continue
                 from = j
                 least = n
-                vectors = stored
             }
             return least
         }
         function end_function(  i, least) {
             least = shortest(divisions)
             if (!least) least = shortest(products)
-            if (name) print name, least ? (stores[from + least - 1] - stores[from - 1]) / 3 : 0, least
+            if (name) print name, vectors[name], least
             if (least) print "loop:" >(dir "/" name ".s")
             for (i = from; i < from + least; i++) print code[i] >(dir "/" name ".s")
             if (least) close(dir "/" name ".s")
             name = ""
             count = 0
             split("", place)
+        }
+        BEGIN {
+            while ((getline row <table) > 0) {
+                split(row, word, " ")
+                vectors[word[1]] = word[2]
+            }
         }
         / <[^>]*>:$/ {
             end_function()
@@ -176,12 +191,13 @@ loops_of() {
     dir=$work/$3_$4
     mkdir -p "$dir"
     "$1" -d --no-show-raw-insn "$2" >"$dir/all"
-    loops "$dir" <"$dir/all" >"$dir/found"
-    [ -s "$dir/found" ]
-    none "no loop with stores and products" "$(awk '$2 != int($2) || !$2 { print $1 }' "$dir/found")"
     set -- "$3" "$4" $(mca_of "$3")
     arch=$1 tier=$2 lanes=$3 triple=$4
     shift 4
+    vectors_of "$arch" "$lanes" >"$dir/vectors"
+    loops "$dir" "$dir/vectors" <"$dir/all" >"$dir/found"
+    [ -s "$dir/found" ]
+    none "no loop with stores and products" "$(awk '!$3 { print $1 }' "$dir/found")"
     for cpu in "$@"; do
         while read -r name vectors length; do
             "$mca" -mtriple="$triple" -mcpu="$cpu" -iterations=500 -instruction-info=0 -resource-pressure=0 \

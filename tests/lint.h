@@ -28,6 +28,9 @@ OP vf vf_div(vf a, vf b) { return a / b; }
 OP vf vf_sqrt(vf a) { return (vf){ __builtin_sqrtf(a[0]) }; }
 OP vf vf_min(vf a, vf b) { return (vf){ a[0] < b[0] ? a[0] : b[0] }; }
 OP vf vf_max(vf a, vf b) { return (vf){ a[0] > b[0] ? a[0] : b[0] }; }
+OP vf vf_at_least(vf a, vf low) { return vf_max(low, a); }
+OP vf vf_at_most(vf a, vf high) { return vf_min(high, a); }
+OP vf vf_not_negative(vf a) { return vf_max(a, vf_splat(0.0f)); }
 OP vf vf_abs(vf a) { return (vf){ __builtin_fabsf(a[0]) }; }
 OP vf vf_flip(vf a, vf s) { return __builtin_signbit(s[0]) ? -a : a; }
 
@@ -42,6 +45,7 @@ OP vf vf_or(vf a, vf b) { return from_bits(bits_of(a) | bits_of(b)); }
 OP vf vf_shift_left(vf a, int n) { return from_bits(bits_of(a) << n); }
 OP vf vf_shift_right(vf a, int n) { return from_bits(bits_of(a) >> n); }
 OP uint32_t vf_signs(vf a) { return bits_of(a) >> 31; }
+OP uint32_t vf_any_sign(vf a) { return vf_signs(a); }
 
 OP void vf_store_half(uint16_t *p, vf a)
 {

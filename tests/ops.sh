@@ -51,7 +51,7 @@ measures_all() {
 
 # What takes no operands has no outcome and no row: a row's shape calls it.
 {
-    sed -nE 's/^(OPERATION|MOVE|FUSABLE|NEAR)\((v[fm]_[a-z0-9_]*),.*/\2/p' tests/ops.def
+    sed -nE 's/^(OPERATION|MOVE|FUSABLE|NEAR|LOOSE)\((v[fm]_[a-z0-9_]*),.*/\2/p' tests/ops.def
     sed -nE 's/^    (v[fm]_[a-z0-9_]*)\(\);$/\1/p' tests/ops_arch.c
 } | sort >"$listed"
 check "tests/ops.def lists every operation once" listed_once

@@ -17,6 +17,16 @@ OP void store_bits(float *out, uint32_t bits)
     for (int lane = 0; lane < VF_LANES; lane++) out[lane] = beyond ? OPS_BROKEN : (float)(bits >> lane & 1);
 }
 
+/* Each lane alone. */
+OP void store_any(float *out, const float *a)
+{
+    for (int lane = 0; lane < VF_LANES; lane++) {
+        float all[VF_LANES] = { 0.0f };
+        __builtin_memcpy(&all[lane], &a[lane], sizeof(float));
+        out[lane] = vf_any_sign(vf_load(all)) ? 1.0f : 0.0f;
+    }
+}
+
 OP void store_splats(float *out, const float *a)
 {
     for (int lane = 0; lane < VF_LANES; lane++) {
@@ -63,6 +73,7 @@ OP void store_streamed(float *out, vf a)
 #define APPLY_COMPARE(name) store_bits(out + i, vm_bits(name(A, B)))
 #define APPLY_BITS(name)    store_bits(out + i, name(MASK(A)))
 #define APPLY_SIGNS(name)   store_bits(out + i, name(A))
+#define APPLY_ANY(name)     store_any(out + i, a + i)
 #define APPLY_SELECT(name)  vf_store(out + i, name(MASK(A), B, C))
 #define APPLY_WHERE(name)   vf_store(out + i, name(MASK(A), B))
 #define APPLY_SHIFT(name)                                                                                             \
