@@ -108,8 +108,8 @@ bool errors_read(const char *files)
 
 found_error errors_of(const work *w, const char *who, const char *arch)
 {
-    const row *searched = w->kernel ? find_row(w->kernel, who, "", true) : NULL;
     const char *name = w->shade == SHADE_TILE ? "tile" : w->format != FLOATS ? "packed" : w->name;
     const row *measured = find_row(name, who, arch, false);
-    return searched ? searched->found : measured ? measured->found : (found_error){ NAN, NAN };
+    const row *searched = w->kernel ? find_row(w->kernel, who, "", true) : NULL;
+    return measured ? measured->found : searched ? searched->found : (found_error){ NAN, NAN };
 }

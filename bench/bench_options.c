@@ -111,9 +111,9 @@ void bench_options_help(void)
            "\n"
            "Errors\n"
            "  Relative (tests/reference.h), where nl and nv are above 5e-4 and alpha is at least 0.01: the worst that\n"
-           "  a search has found, and what 99.9 %% of random samples stay within. Of the library from\n"
-           "  tests/accuracy.tsv, the worst of its architectures'; of baselines, and of what has no row there, each\n"
-           "  architecture's from build/baselines.tsv, where the search begins at the worst of accuracy.tsv. Of\n"
-           "  packed streams, before radiance is rounded: of random samples alone.\n",
+           "  a search has found, and what 99.9 %% of random samples stay within. Of workloads each architecture's,\n"
+           "  and each baseline's, from build/baselines.tsv, where the search begins at the worst of\n"
+           "  tests/accuracy.tsv; of other kernels from there, the worst of their architectures'. Of packed streams,\n"
+           "  before radiance is rounded: of random samples alone.\n",
            BOUND_QUOTIENT, BOUND_ROOT);
 }
