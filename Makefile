@@ -17,9 +17,7 @@ FLAGS.sse41  := -msse4.1
 FLAGS.avx2   := -mavx2 -mfma -mf16c
 FLAGS.avx512 := -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 
-# How gcc orders a kernel's instructions: for latency before registers are handed out, as long as these suffice, 2 to
-# 9 %; after that, where names are few, 4 % of tile by llvm-mca.
-TUNE.sse41  := -frename-registers
+# How gcc orders a kernel's instructions: for latency before registers are handed out, as long as these suffice. 2 to 9 %.
 TUNE.avx2   := -fschedule-insns -fsched-pressure
 TUNE.avx512 := $(TUNE.avx2)
 

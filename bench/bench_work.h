@@ -12,7 +12,7 @@ typedef struct {
 
 typedef struct work {
     const char *name, *title;    /* no title: a kernel of tests/cases.c */
-    const char *kernel;          /* the one there whose errors are these; NULL: none, as F is fitted here */
+    const char *kernel;          /* the one there whose errors are these where none were measured, or NULL */
     facet_material material;
     const facet_light *lights;
     size_t light_count;

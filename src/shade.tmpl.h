@@ -103,8 +103,11 @@ OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
     EACH(k) E[k] = scale3(splat3(light->irradiance), splat(INV_PI));
     const float *component[COMPONENT_COUNT];
     float *radiance[3];
-    for (int c = 0; c < COMPONENT_COUNT; c++) component[c] = b->component[c];
     for (int c = 0; c < 3; c++) radiance[c] = b->radiance[c];
+#define FACET_STREAM(id, field, components, ...)                                                                      \
+    for (int c = COMPONENT_##id; c < COMPONENT_##id + components && x.streams & FACET_STREAM_##id; c++)               \
+        component[c] = b->component[c];
+#include "streams.def"
     group g = open_group(j, x, b, at), h;
     if (x.vectors == 1) g.component = component;
     h = g;
