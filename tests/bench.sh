@@ -144,8 +144,17 @@ baselines_agree() {
     none "far from the reference" "$(awk -F '\t' '/^[bk]/ && !($(NF - 1) < 5e-3 && $NF < 5e-4)' "$build/baselines.tsv")"
     # Where products are fused.
     none "less accurate than the fast tier is" "$(awk -F '\t' '
-        $1 == "kernel" && $2 != "packed" && $3 == "fast" && $4 ~ /^avx/ && !($5 <= 2e-4 && $6 <= 2e-5)' \
+        $1 == "kernel" && $2 != "packed" && $3 == "fast" && $4 ~ /^(avx|neon)/ && !($5 <= 2e-4 && $6 <= 2e-5)' \
         "$build/baselines.tsv")"
+}
+
+# Each architecture's own, of every row that baselines.tsv has of floats.
+own_errors() {
+    awk -F '\t' '$1 == "kernel" && $2 != "packed" { print $2, $3, $4, $5, $6 }' "$build/baselines.tsv" |
+        sort -u >"$work/own"
+    awk -F '\t' '$1 == "kernel" { print $2, $3, $4, $16, $17 }' "$work/all.tsv" | sort -u >"$work/shown"
+    [ -s "$work/own" ]
+    none "not shown" "$(comm -23 "$work/own" "$work/shown")"
 }
 
 same() {
@@ -180,6 +189,7 @@ check "a frame from memory" frame
 check "packed streams beside a frame" packed
 check "every kernel of the table" kernels
 check "the baselines compute the same functions" baselines_agree
+check "errors of workloads are each architecture's own" own_errors
 check "a table is like itself" same
 check "what is faster in another table" other
 check "a run beside a table" against_old

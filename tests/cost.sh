@@ -96,30 +96,34 @@ vectors_of() {
         }' src/special.def
 }
 
-# loops DIR VECTORS: from objdump's text on stdin, to DIR/NAME.s for each plain_NAME: the shortest backward jump's span
-# in which something is divided, or at least multiplied, and as many vectors of each channel are stored as the file
-# VECTORS says. Prints "NAME VECTORS INSTRUCTIONS", 0 instructions where none is.
+# loops DIR VECTORS: from objdump's text on stdin, to DIR/NAME.s for each plain_NAME: of the backward jumps' spans in
+# which as many vectors of each channel are stored as the file VECTORS says, the one in which most is divided: a loop
+# that has numbers in place of streams divides less. Of several the shortest, and where nothing is divided, the shortest
+# in which something is multiplied. Prints "NAME VECTORS INSTRUCTIONS", 0 instructions where none is.
 loops() {
     awk -F'\t' -v dir="$1" -v table="$2" '
         function store(text) {
             return text ~ /^v?movups +%[xyz]mm[0-9]+,.*\)$/ && text !~ /\(%rsp/ || text ~ /^str +q/ && text !~ /\[sp/
         }
         # Sets where it begins; returns its length.
-        function shortest(work,  i, j, n, least) {
-            least = 0
+        function busiest(work, counts,  i, j, n, here, most, least) {
+            most = least = 0
             for (i = 1; i <= count; i++) {
                 j = to[i] in place ? place[to[i]] : count
                 n = i - j + 1
-                if (j >= i || work[i] == work[j - 1] || stores[i] - stores[j - 1] != 3 * vectors[name]) continue
-                if (least && least <= n) continue
+                here = work[i] - work[j - 1]
+                if (j >= i || !here || stores[i] - stores[j - 1] != 3 * vectors[name]) continue
+                if (least && counts && here < most) continue
+                if (least && !(counts && here > most) && least <= n) continue
+                most = here
                 from = j
                 least = n
             }
             return least
         }
         function end_function(  i, least) {
-            least = shortest(divisions)
-            if (!least) least = shortest(products)
+            least = busiest(divisions, 1)
+            if (!least) least = busiest(products, 0)
             if (name) print name, vectors[name], least
             if (least) print "loop:" >(dir "/" name ".s")
             for (i = from; i < from + least; i++) print code[i] >(dir "/" name ".s")
