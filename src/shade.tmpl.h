@@ -105,8 +105,7 @@ OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
     float *radiance[3];
     for (int c = 0; c < 3; c++) radiance[c] = b->radiance[c];
 #define FACET_STREAM(id, field, components, ...)                                                                      \
-    for (int c = COMPONENT_##id; c < COMPONENT_##id + components && x.streams & FACET_STREAM_##id; c++)               \
-        component[c] = b->component[c];
+    for (int c = COMPONENT_##id; c < COMPONENT_##id + components; c++) component[c] = b->component[c];
 #include "streams.def"
     group g = open_group(j, x, b, at), h;
     if (x.vectors == 1) g.component = component;
