@@ -29,7 +29,8 @@ OP vf vf_div(vf a, vf b) { return a / b; }
 #else
 /* The estimate of 1/b is within 2^-8.4, after a Newton step within 2^-16.8; q is corrected by what it leaves of a.
  * As llvm-mca computes them, the loops of special.def that divide take 9 to 53 % fewer cycles of a cortex-a72 than by
- * the divider alone, and 3 % fewer to 2 % more of a neoverse-n1. Square roots made likewise cost the latter 7 to 14 %. */
+ * the divider alone, and 3 % fewer to 2 % more of a neoverse-n1. Square roots made likewise cost the latter 7 to
+ * 14 %. */
 OP vf vf_div(vf a, vf b)
 {
     vf r = vrecpeq_f32(b);

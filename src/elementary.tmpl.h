@@ -53,7 +53,7 @@ OP vf log1p_ratio(vf s, vf c)
 #define ARCCOS_WORST { { 3.06, { 0x1.ed7186p-2f } }, { 3.11, { 0x1.f709d6p-2f } } }
 OP vf arccos(vf x)
 {
-    vf y = vf_min(vf_max(1.0f - x, splat(0.0f)), splat(1.0f));
+    vf y = vf_min(vf_not_negative(1.0f - x), splat(1.0f));
     vf p = splat(0x1.49abbcp-10f);
     p = vf_mad(p, y, splat(-0x1.19f194p-9f));
     p = vf_mad(p, y, splat(0x1.d280dp-9f));
@@ -86,7 +86,7 @@ OP vf ierfc_half(vf a)
     p = vf_mad(p, v, splat(-0x1.5d40e4p-5f));
     p = vf_mad(p, v, splat(0x1.67a53ap-4f));
     p = vf_mad(p, v, splat(-0x1.4856ep-3f));
-    return vf_max(vf_mad(p, a, splat(0x1.20dd76p-2f)), splat(0.0f));
+    return vf_not_negative(vf_mad(p, a, splat(0x1.20dd76p-2f)));
 }
 
 #endif
