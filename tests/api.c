@@ -1,10 +1,8 @@
-/* The public functions beside shading itself: words, plans as bytes, sizes, descriptions, threads, passes of
- * lights. */
-#include "cases.h"
+/* The public functions beside shading itself: words, plans as bytes, descriptions, threads, passes of lights. */
+#include "api.h"
+
 #include "guarded.h"
 #include "harness.h"
-#include "refusals.h"
-#include "samples.h"
 #include "targets.h"
 
 #include <limits.h>
@@ -15,19 +13,7 @@
 #include <string.h>
 #include <time.h>
 
-/* What a material may promise. */
-enum {
-#define OF_GEOMETRY(id)
-#define OF_MATERIAL(id) | FACET_STREAM_##id
-#define OF_SOURCE(id)   | FACET_STREAM_##id
-#define FACET_STREAM(id, field, components, owner, ...) OF_##owner(id)
-    ALL_STREAMS = 0
-#include "streams.def"
-};
-
 _Static_assert(sizeof(facet_plan) == 512, "what callers keep in flash and in files");
-
-static const facet_target strict_scalar = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
 
 /* ---- Words ------------------------------------------------------------------------------------------------------- */
 
@@ -83,67 +69,6 @@ static void test_build(void)
         expect(lanes <= facet_arch_lanes(best) || !facet_has(FACET_KIND_ARCH, arch), "wider than the best");
     }
     expect(facet_arch_lanes((facet_arch)99) == 0 && facet_arch_lanes((facet_arch)-1) == 0, "lanes of no architecture");
-}
-
-/* ---- Materials and batches to work with -------------------------------------------------------------------------- */
-
-static facet_material rich_material(void)
-{
-    return (facet_material){
-        .diffuse = { FACET_DIFFUSE_OREN_NAYAR, { 0.8f, 0.5f, 0.25f }, 0.5f },
-        .specular = { FACET_DISTRIBUTION_GGX, FACET_MASKING_SMITH_CORRELATED, 0.25f, 0.5f, 30.5f, 0.75f },
-        .fresnel = { FACET_FRESNEL_SCHLICK, { 0.04f, 0.05f, 0.06f }, 0.9f, { 0.7f, 0.8f, 0.9f }, { 1.5f, 1.6f, 1.7f },
-                     { 0.5f, 0, 0 }, 1.25f, -0.3f },
-        .convention = { FACET_CONVENTION_DIRECT, { 0.9f, 0.6f, 0.3f }, 0.4f, 0.6f, 0.7f, 0.55f },
-        .coupled = true,
-        .emission = { 0.1f, 0.2f, 0.3f },
-    };
-}
-
-/* The same numbers with a kernel's models. */
-static facet_material rich_material_of(const kernel_case *k)
-{
-    facet_material m = rich_material();
-    m.diffuse.model = k->material.diffuse.model;
-    m.diffuse.sigma = k->sigma_max / 2;
-    m.specular.model = k->material.specular.model;
-    m.specular.masking = k->material.specular.masking;
-    m.fresnel.model = k->material.fresnel.model;
-    m.coupled = k->material.coupled;
-    return m;
-}
-
-static facet_plan make_plan(const facet_material *m, facet_target target)
-{
-    facet_plan plan;
-    expect(facet_plan_init(&plan, m, target, NULL) == FACET_OK, "a good material is refused");
-    return plan;
-}
-
-static sample_batch random_batch(int count, uint64_t seed)
-{
-    test_random r = { seed };
-    sample *samples = calloc((size_t)count, sizeof *samples);
-    if (!samples) abort();
-    for (int i = 0; i < count; i++) samples[i] = random_sample(&r, i % SAMPLES_KINDS, 0.01f, 1.5f);
-    sample_batch b = batch_of(samples, count);
-    for (int c = 0; c < 3; c++) {
-        memset(b.batch.radiance[c], 0, (size_t)count * sizeof(float));
-        b.batch.base[c] = b.batch.albedo[c];
-    }
-    b.batch.metallic = b.batch.f0[0];
-    b.batch.roughness = b.batch.glossiness = b.batch.alpha;
-    b.batch.specular_level = b.batch.f0[1];
-    b.batch.occlusion = b.batch.f0[2];
-    free(samples);
-    return b;
-}
-
-static bool same_radiance(const facet_batch *a, const facet_batch *b)
-{
-    bool same = true;
-    for (int c = 0; c < 3; c++) same = same && !memcmp(a->radiance[c], b->radiance[c], a->count * sizeof(float));
-    return same;
 }
 
 /* ---- Plans ------------------------------------------------------------------------------------------------------- */
@@ -358,9 +283,9 @@ static void test_descriptions(void)
     for (int i = 0; i < case_count(); i++) {
         const facet_convention convention = (facet_convention)(i % 3);
         check_description(case_at(i), convention, 0);
-        check_description(case_at(i), convention, ALL_STREAMS);
-        for (uint32_t bit = 1; bit <= ALL_STREAMS; bit <<= 1)
-            if (bit & ALL_STREAMS) check_description(case_at(i), convention, bit);
+        check_description(case_at(i), convention, MATERIAL_STREAMS);
+        for (uint32_t bit = 1; bit <= MATERIAL_STREAMS; bit <<= 1)
+            if (bit & MATERIAL_STREAMS) check_description(case_at(i), convention, bit);
     }
     const facet_plan none = { { 0 } };
     char text[8];
@@ -379,165 +304,6 @@ static void test_descriptions(void)
     };
     for (size_t i = 0; i < sizeof errors / sizeof errors[0]; i++)
         check_describe(describe_error, &errors[i].error, errors[i].words);
-}
-
-/* ---- Sizes ------------------------------------------------------------------------------------------------------- */
-
-/* A struct of `size` bytes: cut off, or with a tail of zeros. */
-static void resize(void *to, size_t size, const void *from, size_t whole)
-{
-    memset(to, 0, size);
-    memcpy(to, from, size < whole ? size : whole);
-}
-
-enum { TAIL = 40 };
-
-static void test_material_sizes(void)
-{
-    struct { facet_material m; unsigned char tail[TAIL]; } given;
-    const facet_material whole = rich_material();
-    test("a material cut short counts as filled with zeros; a longer one may end in zeros alone");
-    for (size_t size = 0; size <= sizeof whole + TAIL; size++) {
-        facet_plan plan = { { 0 } }, want = { { 0 } };
-        facet_material filled;
-        facet_error error, want_error;
-        resize(&filled, sizeof filled, &whole, size < sizeof whole ? size : sizeof whole);
-        memset(&given, 0xa5, sizeof given);
-        resize(&given, size, &whole, sizeof whole);
-        facet_plan_init(&want, &filled, strict_scalar, &want_error);
-        facet_plan_init_sized(&plan, sizeof plan, &given.m, size, &strict_scalar, sizeof strict_scalar, &error);
-        expect(error.code == want_error.code && !memcmp(&plan, &want, sizeof plan), "%zu bytes: status %d, not %d",
-               size, (int)error.code, (int)want_error.code);
-    }
-    for (size_t at = sizeof whole; at < sizeof whole + TAIL; at++) {
-        facet_plan plan = { { 7 } };
-        facet_error error;
-        resize(&given, sizeof given, &whole, sizeof whole);
-        given.tail[at - sizeof whole] = 1;
-        facet_plan_init_sized(&plan, sizeof plan, &given.m, sizeof whole + TAIL, &strict_scalar, sizeof strict_scalar,
-                              &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "material") && plan.opaque[0] == 7,
-               "byte %zu is taken", at);
-    }
-}
-
-static void test_plan_sizes(void)
-{
-    struct { facet_plan plan; unsigned char beyond[TAIL]; } given;
-    const facet_material m = rich_material();
-    const facet_plan want = make_plan(&m, strict_scalar);
-    facet_error error;
-    test("a plan that is too small is refused; of a larger one the rest is untouched");
-    memset(&given, 0xa5, sizeof given);
-    for (size_t size = 0; size < sizeof want; size++) {
-        facet_plan_init_sized(&given.plan, size, &m, sizeof m, &strict_scalar, sizeof strict_scalar, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "plan"), "%zu bytes: status %d", size,
-               (int)error.code);
-    }
-    for (size_t i = 0; i < sizeof given; i++) expect(((unsigned char *)&given)[i] == 0xa5, "written on refusal");
-    facet_plan_init_sized(&given.plan, sizeof given, &m, sizeof m, &strict_scalar, sizeof strict_scalar, &error);
-    expect(error.code == FACET_OK && !memcmp(&given.plan, &want, sizeof want), "a larger plan differs");
-    for (int i = 0; i < TAIL; i++) expect(given.beyond[i] == 0xa5, "byte %d behind the plan is written", i);
-}
-
-static void test_target_sizes(void)
-{
-    struct { facet_target target; unsigned char tail[TAIL]; } given;
-    const facet_target whole = { FACET_ARCH_SCALAR, FACET_TIER_STRICT, 1u << FACET_ARCH_SCALAR };
-    const facet_material m = rich_material();
-    test("a target cut short or made longer, alike; NULL is refused");
-    for (size_t size = 0; size <= sizeof whole + TAIL; size += sizeof(uint32_t)) {
-        facet_plan plan = { { 0 } }, want = { { 0 } };
-        facet_target filled;
-        facet_error error, want_error;
-        resize(&filled, sizeof filled, &whole, size < sizeof whole ? size : sizeof whole);
-        memset(&given, 0xa5, sizeof given);
-        resize(&given, size, &whole, sizeof whole);
-        facet_plan_init(&want, &m, filled, &want_error);
-        facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, &given.target, size, &error);
-        expect(error.code == want_error.code && !memcmp(&plan, &want, sizeof plan), "%zu bytes: status %d, not %d",
-               size, (int)error.code, (int)want_error.code);
-    }
-    for (size_t at = 0; at < TAIL; at++) {
-        facet_plan plan = { { 7 } };
-        facet_error error;
-        resize(&given, sizeof given, &whole, sizeof whole);
-        given.tail[at] = 1;
-        facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, &given.target, sizeof whole + TAIL, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "target") && plan.opaque[0] == 7,
-               "byte %zu is taken", at);
-    }
-    facet_plan plan;
-    facet_error error;
-    facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, NULL, sizeof whole, &error);
-    expect(error.code == FACET_ERROR_NULL && !strcmp(error.field, "target"), "NULL: status %d", (int)error.code);
-}
-
-static void test_batch_sizes(void)
-{
-    struct { facet_batch batch; unsigned char tail[TAIL]; } given;
-    sample_batch b = random_batch(10, 3), other = random_batch(10, 3);
-    facet_material m = rich_material();
-    m.streams = ALL_STREAMS;
-    const facet_plan plan = make_plan(&m, strict_scalar);
-    test("a batch cut short or made longer, alike; lights of another size are not misread");
-    for (size_t size = 0; size <= sizeof b.batch + TAIL; size += sizeof(void *)) {
-        facet_batch filled;
-        facet_error error, want_error;
-        resize(&filled, sizeof filled, &b.batch, size < sizeof filled ? size : sizeof filled);
-        memset(&given, 0xa5, sizeof given);
-        resize(&given, size, &other.batch, sizeof other.batch);
-        facet_shade(&plan, &filled, &want_error);
-        facet_shade_sized(&plan, &given.batch, size, sizeof(facet_light), &error);
-        expect(error.code == want_error.code && same_radiance(&b.batch, &other.batch), "%zu bytes: status %d, not %d",
-               size, (int)error.code, (int)want_error.code);
-    }
-    for (size_t at = 0; at < TAIL; at++) {
-        facet_error error;
-        resize(&given, sizeof given, &other.batch, sizeof other.batch);
-        given.tail[at] = 1;
-        facet_shade_sized(&plan, &given.batch, sizeof other.batch + TAIL, sizeof(facet_light), &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "batch"), "byte %zu is taken", at);
-    }
-    const size_t light_sizes[] = { 0, 4, sizeof(facet_light) - sizeof(void *), sizeof(facet_light) + sizeof(void *),
-                                   SIZE_MAX };
-    for (size_t i = 0; i < sizeof light_sizes / sizeof light_sizes[0]; i++) {
-        facet_error error;
-        facet_shade_sized(&plan, &other.batch, sizeof other.batch, light_sizes[i], &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "lights"), "lights of %zu bytes: status %d",
-               light_sizes[i], (int)error.code);
-    }
-    free_batch(&b);
-    free_batch(&other);
-}
-
-static void test_image_sizes(void)
-{
-    struct { facet_image image; unsigned char tail[TAIL]; } given;
-    static const float light[4] = { 0.1f, 0.2f, 0.3f, 0.4f };
-    uint8_t pixels[16] = { 0 }, want[16] = { 0 };
-    const facet_image whole = { .width = 2, .height = 2, .radiance = { light, light, light }, .exposure = 2,
-                                .pixels = pixels };
-    test("an image cut short or made longer, alike");
-    for (size_t size = 0; size <= sizeof whole + TAIL; size += sizeof(void *)) {
-        facet_image filled;
-        facet_error error, want_error;
-        resize(&filled, sizeof filled, &whole, size < sizeof filled ? size : sizeof filled);
-        memset(&given, 0xa5, sizeof given);
-        resize(&given, size, &whole, sizeof whole);
-        if (filled.pixels) filled.pixels = want;
-        facet_encode(&filled, &want_error);
-        facet_encode_sized(&given.image, size, &error);
-        expect(error.code == want_error.code && !memcmp(pixels, want, sizeof pixels), "%zu bytes: status %d, not %d",
-               size, (int)error.code, (int)want_error.code);
-    }
-    for (size_t at = 0; at < TAIL; at++) {
-        facet_error error;
-        resize(&given, sizeof given, &whole, sizeof whole);
-        given.tail[at] = 1;
-        facet_encode_sized(&given.image, sizeof whole + TAIL, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "image"), "byte %zu is taken", at);
-    }
 }
 
 /* ---- Passes of lights -------------------------------------------------------------------------------------------- */
@@ -598,7 +364,7 @@ static void test_unread_streams(void)
     static const float odd[] = { NAN, -1, 0.5f, INFINITY, 2, 0 };
     float unread[COUNT], one[COUNT], zero[COUNT] = { 0 }, radiance[3][COUNT];
     for (int i = 0; i < COUNT; i++) unread[i] = odd[i % 6], one[i] = 1;
-    const facet_material glow = { .emission = { 1, 2, 3 }, .streams = ALL_STREAMS };
+    const facet_material glow = { .emission = { 1, 2, 3 }, .streams = MATERIAL_STREAMS };
     for (int i = 0; i < target_count(); i++) {
         test("streams that no model reads change nothing, %s", target_words(target_at(i)));
         facet_plan plan;
@@ -673,7 +439,7 @@ static void check_threads(bool shared)
     pthread_t threads[THREADS];
     sample_batch batches[THREADS];
     facet_material m = rich_material();
-    m.streams = ALL_STREAMS;
+    m.streams = MATERIAL_STREAMS;
     const facet_plan plan = make_plan(&m, (facet_target){ 0 });
     for (int i = 0; i < THREADS; i++) {
         batches[i] = random_batch(THREAD_SAMPLES, shared ? 8 : 8 + (uint64_t)i);
@@ -696,17 +462,14 @@ void suite_api(void)
 {
     test_words();
     test_build();
-    test_refusals();
+    test_refused_plans();
+    test_refused_batches();
     test_plan_bytes();
     test_arches();
     test_plan_time();
     test_foreign_plans();
     test_descriptions();
-    test_material_sizes();
-    test_plan_sizes();
-    test_target_sizes();
-    test_batch_sizes();
-    test_image_sizes();
+    test_sizes();
     test_lights_in_passes();
     test_unread_streams();
     test_empty();

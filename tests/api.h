@@ -1,0 +1,39 @@
+/* The api suite: its parts, and what they work with. */
+#ifndef API_H
+#define API_H
+
+#include "cases.h"
+#include "samples.h"
+
+/* All streams, and those that a material may promise. */
+enum {
+#define FACET_STREAM(id, ...) | FACET_STREAM_##id
+    ALL_STREAMS = 0
+#include "streams.def"
+#define OF_GEOMETRY(id)
+#define OF_MATERIAL(id) | FACET_STREAM_##id
+#define OF_SOURCE(id)   | FACET_STREAM_##id
+#define FACET_STREAM(id, field, components, owner, ...) OF_##owner(id)
+    , MATERIAL_STREAMS = 0
+#include "streams.def"
+};
+
+static const facet_target strict_scalar = { .arch = FACET_ARCH_SCALAR, .tier = FACET_TIER_STRICT };
+
+/* Every number has a value that is neither its default nor at an end of its domain. */
+facet_material rich_material(void);
+facet_material rich_material_of(const kernel_case *);        /* with a kernel's models */
+facet_plan make_plan(const facet_material *, facet_target);
+
+/* Random samples that have every stream but a position; their radiance is 0. */
+sample_batch random_batch(int count, uint64_t seed);
+bool same_radiance(const facet_batch *, const facet_batch *);
+
+bool is_error(const facet_error *, facet_status, const char *field, int index);
+
+/* Tests. */
+void test_refused_plans(void);       /* refused_plans.c */
+void test_refused_batches(void);     /* refused_batches.c */
+void test_sizes(void);               /* sizes.c */
+
+#endif
