@@ -15,7 +15,6 @@ typedef struct { vf m; } vm;
 #define VF_LANES 8
 #define VF_INTERLEAVE 2
 #define VF_INTERLEAVE_WIDE 1
-#define VF_AHEAD 1
 #define VF_STREAMS 1
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }

@@ -14,7 +14,6 @@ typedef struct { uint32x4_t m; } vm;
 #define VF_LANES 4
 #define VF_INTERLEAVE 1
 #define VF_INTERLEAVE_WIDE 2
-#define VF_AHEAD 1
 #define VF_STREAMS 0
 
 OP vf vf_load(const float *p) { return (vf)*(const vf_memory *)p; }

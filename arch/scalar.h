@@ -4,8 +4,8 @@
  * vf: VF_LANES floats, with native + - * / alone (each rounds to nearest, lane by lane). vm: a mask, opaque.
  * Comparisons are false where an operand is NaN. FACET_STRICT 1: vf_mad and vf_nmad round twice, as everywhere; 0:
  * once where the ISA fuses. VF_INTERLEAVE: vectors that the kernel of all models takes side by side;
- * VF_INTERLEAVE_WIDE: those that rows of special.def take which are wide at VF_LANES. VF_AHEAD: whether a plain row
- * looks at the next group while it shades one. VF_STREAMS: whether vf_stream is more than vf_store. */
+ * VF_INTERLEAVE_WIDE: those that rows of special.def take which are wide at VF_LANES. VF_STREAMS: whether vf_stream is
+ * more than vf_store. */
 #ifndef FACET_ARCH_SCALAR_H
 #define FACET_ARCH_SCALAR_H
 
@@ -20,7 +20,6 @@ typedef struct { int m; } vm;
 #define VF_LANES 1
 #define VF_INTERLEAVE 1
 #define VF_INTERLEAVE_WIDE 1
-#define VF_AHEAD 1
 #define VF_STREAMS 0
 
 OP vf vf_load(const float *p) { return *(const vf_memory *)p; }

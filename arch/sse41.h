@@ -6,8 +6,4 @@
 
 #include "sse2.h"
 
-/* 1.05 times as fast without in tile and plastic, 1.01 to 1.04 in the others. */
-#undef VF_AHEAD
-#define VF_AHEAD 0
-
 #endif

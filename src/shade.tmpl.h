@@ -88,8 +88,8 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, inval
     return at;
 }
 
-/* The same for one plain light. VF_AHEAD: how it meets a group is found beside what the group before reflects, so that
- * one's arithmetic fills the other's latencies. A copy of the pointers: what is stored cannot change it, so that they
+/* The same for one plain light. How it meets a group is found beside what the group before reflects, so that one's
+ * arithmetic fills the other's latencies. A copy of the pointers: what is stored cannot change it, so that they
  * stay in registers or on the stack; two vectors side by side leave too few. It is made stream by stream, in loops so
  * short that they unroll and what nothing reads goes: a fifth of a call's instructions with SSE. */
 OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
@@ -111,23 +111,21 @@ OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
     group g = open_group(j, x, b, at), h;
     if (x.vectors == 1) g.component = component;
     h = g;
-    if (VF_AHEAD) {
-        look(&g, x);
-        meet(&g, x, l, t);
-    }
+    look(&g, x);
+    meet(&g, x, l, t);
     for (; at + step <= end; at += step) {
         vf odd[VECTORS];
-        h.at = VF_AHEAD && at + 2 * step <= end ? g.at + step : g.at;
+        h.at = at + 2 * step <= end ? g.at + step : g.at;
         look(&h, x);
-        meet(&h, x, l, VF_AHEAD ? next : t);
+        meet(&h, x, l, next);
         EACH(k) odd[k] = odd_values(&g, x, k);
         prepare(&g, x);
         reflect(&g, x, t, g.sum);
         EACH(k) g.sum[k] = mul3(g.sum[k], E[k]);
         if (is_odd(&g, x, odd)) break;
         store(&g, x, false, x.vectors == 1 ? radiance : b->radiance, at);
-        g.at = VF_AHEAD ? h.at : g.at + step;
-        if (VF_AHEAD) EACH(k) t[k] = next[k];
+        g.at = h.at;
+        EACH(k) t[k] = next[k];
     }
     return at;
 }

@@ -15,7 +15,6 @@ typedef struct { lanes_of_bits m; } vm;
 #define VF_LANES 1
 #define VF_INTERLEAVE 1
 #define VF_INTERLEAVE_WIDE 2
-#define VF_AHEAD 1
 #define VF_STREAMS 0
 
 OP vf vf_load(const float *p) { return (vf){ *p }; }
