@@ -13,7 +13,7 @@ typedef uint32_t vf_bits __attribute__((vector_size(16)));
 typedef struct { vf m; } vm;
 
 #define VF_LANES 4
-#define VF_INTERLEAVE 1
+#define VF_INTERLEAVE 2
 #define VF_INTERLEAVE_WIDE 1
 #define VF_STREAMS 1
 
