@@ -12,7 +12,7 @@ typedef float vf_memory __attribute__((vector_size(16), aligned(4), may_alias));
 typedef struct { uint32x4_t m; } vm;
 
 #define VF_LANES 4
-#define VF_INTERLEAVE 1
+#define VF_INTERLEAVE 2
 #define VF_INTERLEAVE_WIDE 2
 #define VF_STREAMS 0
 
