@@ -17,7 +17,7 @@ FLAGS.sse41  := -msse4.1
 FLAGS.avx2   := -mavx2 -mfma -mf16c
 FLAGS.avx512 := -mavx512f -mavx512vl -mavx512dq -mavx512bw -mprefer-vector-width=512
 
-# How gcc orders a kernel's instructions: for latency before registers are handed out, as long as they suffice: 2 to 9 %.
+# How gcc orders a kernel's instructions: for latency before registers are handed out, while they suffice: 2 to 9 %.
 # SSE's overwrite an operand; renamed, they can be ordered once more: 4 to 24 % in all, but for SSE4.1's lambert, -3 %.
 TUNE.avx2   := -fschedule-insns -fsched-pressure
 TUNE.avx512 := $(TUNE.avx2)
