@@ -18,7 +18,7 @@ typedef float __attribute__((may_alias)) vf_memory;
 typedef struct { int m; } vm;
 
 #define VF_LANES 1
-#define VF_INTERLEAVE 1
+#define VF_INTERLEAVE 1          /* 2: 1.0 to 1.3 times as fast, for a quarter more code than small machines want */
 #define VF_INTERLEAVE_WIDE 1
 #define VF_STREAMS 0
 

@@ -8,7 +8,7 @@
 
 /* Samples in a block, where parameters are derived from others, or streams are packed; where coverage is looked at, no
  * more than a uint64_t has bits. Packed streams into halves, of 128 in place of 64: 1.07 times as fast with AVX-512,
- * 1.05 AVX2, 1.02 SSE4.1; of 256, whose values do not fit into L1, 0.87. */
+ * 1.05 AVX2; of 256, whose values do not fit into L1, 0.87. */
 #define BLOCK (VF_LANES > 1 ? 128 : 16)
 
 _Static_assert(BLOCK % GROUP == 0 && (BLOCK == 16 || BLOCK % 64 == 0), "a group is within a block");

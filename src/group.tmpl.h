@@ -6,9 +6,9 @@
 
 #include "models.tmpl.h"
 
-/* Vectors side by side, features.vectors, a constant: one, or what measured fastest and the vector layer says, for the
- * kernel that has all models, whose group is what is mended, and for rows of special.def that are wide at so many
- * lanes. VECTORS: the most. */
+/* Vectors side by side, features.vectors, a constant: one, or as many as the vector layer says, for the kernel that has
+ * all models, whose group is what is mended, and for rows of special.def that are wide at so many lanes. VECTORS: the
+ * most. */
 #define GROUP   (VF_INTERLEAVE * VF_LANES)
 #define VECTORS (VF_INTERLEAVE > VF_INTERLEAVE_WIDE ? VF_INTERLEAVE : VF_INTERLEAVE_WIDE)
 #define EACH(k) UNROLLED for (int k = 0; k < x.vectors; k++)

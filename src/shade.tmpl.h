@@ -89,9 +89,9 @@ OP size_t shade_block(const job *j, features x, const block *b, size_t at, inval
 }
 
 /* The same for one plain light. How it meets a group is found beside what the group before reflects, so that one's
- * arithmetic fills the other's latencies. A copy of the pointers: what is stored cannot change it, so that they
- * stay in registers or on the stack; two vectors side by side leave too few. It is made stream by stream, in loops so
- * short that they unroll and what nothing reads goes: a fifth of a call's instructions with SSE. */
+ * arithmetic fills the other's latencies. A copy of the pointers: what is stored cannot change it, so that they stay in
+ * registers or on the stack; two vectors side by side leave too few. It is made stream by stream, in loops so short
+ * that they unroll and what nothing reads goes: a fifth of a call's instructions with SSE. */
 OP size_t shade_plain(const job *j, features x, const block *b, size_t at)
 {
     const size_t end = covered_end(b, at), step = (size_t)x.vectors * VF_LANES;

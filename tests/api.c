@@ -1,6 +1,7 @@
 /* The public functions beside shading itself: words, plans as bytes, descriptions, threads, passes of lights. */
 #include "api.h"
 
+#include "errors.h"
 #include "guarded.h"
 #include "harness.h"
 #include "targets.h"
@@ -9,7 +10,6 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -125,7 +125,7 @@ static void check_arches(const facet_material *m, uint32_t arches)
         facet_plan plan;
         facet_error error;
         facet_plan_init(&plan, m, (facet_target){ .arch = (facet_arch)arch, .arches = arches }, &error);
-        expect(held ? !error.code : error.code == FACET_ERROR_ARCH && !strcmp(error.field, "target.arch"),
+        expect(held ? !error.code : is_error(&error, FACET_ERROR_ARCH, "target.arch", -1),
                "%d of %x: status %d", arch, (unsigned)arches, (int)error.code);
         expect(!held || facet_plan_target(&plan).arch == want, "%d of %x is %d", arch, (unsigned)arches,
                (int)facet_plan_target(&plan).arch);

@@ -23,13 +23,11 @@ static const facet_target strict_scalar = { .arch = FACET_ARCH_SCALAR, .tier = F
 /* Every number has a value that is neither its default nor at an end of its domain. */
 facet_material rich_material(void);
 facet_material rich_material_of(const kernel_case *);        /* with a kernel's models */
-facet_plan make_plan(const facet_material *, facet_target);
+facet_plan make_plan(const facet_material *, facet_target);      /* a refusal fails the test */
 
-/* Random samples that have every stream but a position; their radiance is 0. */
+/* Random samples with every stream; their radiance is 0. */
 sample_batch random_batch(int count, uint64_t seed);
 bool same_radiance(const facet_batch *, const facet_batch *);
-
-bool is_error(const facet_error *, facet_status, const char *field, int index);
 
 /* Tests. */
 void test_refused_plans(void);       /* refused_plans.c */

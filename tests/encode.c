@@ -1,6 +1,7 @@
 /* facet_encode: every step of the sRGB curve at its exact float, opacity, layout, refusals. */
 #include "bits.h"
 #include "guarded.h"
+#include "errors.h"
 #include "harness.h"
 
 #include "facet.h"
@@ -271,7 +272,7 @@ static void refuses(const char *change, const facet_image *image, facet_status c
 {
     facet_error error = { FACET_OK, NULL, 0 };
     const facet_status status = facet_encode(image, &error);
-    expect(status == code && error.code == code && error.field && !strcmp(error.field, field) && error.index == index,
+    expect(status == code && is_error(&error, code, field, index),
            "%s: status %d, %s[%d]", change, (int)status, error.field ? error.field : "NULL", error.index);
     expect(facet_encode(image, NULL) == code, "%s: another status without an error", change);
 }
@@ -312,7 +313,7 @@ static void check_refusals(void)
 
     facet_error error = { FACET_ERROR_NULL, "stale", 5 };
     expect(facet_encode(&good, &error) == FACET_OK, "a good image is refused");
-    expect(error.code == FACET_OK && !error.field && error.index == -1, "a success leaves an error");
+    expect(is_no_error(&error), "a success leaves an error");
 }
 
 void suite_encode(void)

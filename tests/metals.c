@@ -1,6 +1,7 @@
 /* Metals' constants, made anew from the measured tables and held against what others print of the same tables; spectra
  * whose means are known. */
 #include "bits.h"
+#include "errors.h"
 #include "harness.h"
 #include "spectra.h"
 
@@ -356,7 +357,7 @@ static void refuses(const char *change, call c, facet_status code, const char *f
     facet_error error = { FACET_OK, NULL, 0 };
     const facet_status status =
         facet_index_of_spectrum(c.wavelength, c.n, c.k, c.count, c.eta, c.extinction, &error);
-    expect(status == code && error.code == code && error.field && !strcmp(error.field, field) && error.index == index,
+    expect(status == code && is_error(&error, code, field, index),
            "%s: status %d, %s[%d]", change, (int)status, error.field ? error.field : "NULL", error.index);
     expect(facet_index_of_spectrum(c.wavelength, c.n, c.k, c.count, c.eta, c.extinction, NULL) == code,
            "%s: another status without an error", change);
@@ -406,7 +407,7 @@ static void check_refusals(void)
     facet_error error = { FACET_ERROR_NULL, "stale", 5 };
     static const float wavelength[] = { 450, 740 }, n[] = { 1, 1 };
     expect(!facet_index_of_spectrum(wavelength, n, n, 2, m.eta, m.k, &error), "two rows are refused");
-    expect(error.code == FACET_OK && !error.field && error.index == -1, "a success leaves an error");
+    expect(is_no_error(&error), "a success leaves an error");
 }
 
 void suite_metals(void)

@@ -1,6 +1,7 @@
 /* What facet_shade refuses, by status, field and index, and that nothing is written then. */
 #include "api.h"
 
+#include "errors.h"
 #include "harness.h"
 
 #include <float.h>
@@ -73,7 +74,7 @@ static void refuses_batch(const char *change, const facet_plan *plan, const face
 static void accepts_batch(const char *change, const facet_plan *plan, const facet_batch *b)
 {
     facet_error error = { FACET_ERROR_NULL, "stale", 7 };
-    expect(facet_shade(plan, b, &error) == FACET_OK && error.code == FACET_OK && !error.field && error.index == -1,
+    expect(facet_shade(plan, b, &error) == FACET_OK && is_no_error(&error),
            "%s: status %d, %s[%d]", change, (int)error.code, error.field ? error.field : "NULL", error.index);
 }
 

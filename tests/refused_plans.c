@@ -1,6 +1,7 @@
 /* What facet_plan_init refuses, by status, field and index, and that nothing is written then. */
 #include "api.h"
 
+#include "errors.h"
 #include "harness.h"
 
 #include "models.def"                /* the properties of its rows */
@@ -37,7 +38,7 @@ static void accepts_plan(const char *change, const facet_material *m, facet_targ
     facet_plan plan;
     facet_error error = { FACET_ERROR_NULL, "stale", 7 };
     const facet_status status = facet_plan_init(&plan, m, target, &error);
-    expect(status == FACET_OK && error.code == FACET_OK && !error.field && error.index == -1,
+    expect(status == FACET_OK && is_no_error(&error),
            "%s: status %d, %s[%d]", change, (int)error.code, error.field ? error.field : "NULL", error.index);
 }
 

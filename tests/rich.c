@@ -63,8 +63,3 @@ bool same_radiance(const facet_batch *a, const facet_batch *b)
     for (int c = 0; c < 3; c++) same = same && !memcmp(a->radiance[c], b->radiance[c], a->count * sizeof(float));
     return same;
 }
-
-bool is_error(const facet_error *e, facet_status code, const char *field, int index)
-{
-    return e->code == code && e->field && !strcmp(e->field, field) && e->index == index;
-}

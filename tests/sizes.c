@@ -1,6 +1,7 @@
 /* What a caller of an older or a newer header passes: structs that are shorter or longer than the library's. */
 #include "api.h"
 
+#include "errors.h"
 #include "harness.h"
 
 #include <string.h>
@@ -38,7 +39,7 @@ static void test_material_sizes(void)
         given.tail[at - sizeof whole] = 1;
         facet_plan_init_sized(&plan, sizeof plan, &given.m, sizeof whole + TAIL, &strict_scalar, sizeof strict_scalar,
                               &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "material") && plan.opaque[0] == 7,
+        expect(is_error(&error, FACET_ERROR_SIZE, "material", -1) && plan.opaque[0] == 7,
                "byte %zu is taken", at);
     }
 }
@@ -53,7 +54,7 @@ static void test_plan_sizes(void)
     memset(&given, 0xa5, sizeof given);
     for (size_t size = 0; size < sizeof want; size++) {
         facet_plan_init_sized(&given.plan, size, &m, sizeof m, &strict_scalar, sizeof strict_scalar, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "plan"), "%zu bytes: status %d", size,
+        expect(is_error(&error, FACET_ERROR_SIZE, "plan", -1), "%zu bytes: status %d", size,
                (int)error.code);
     }
     for (size_t i = 0; i < sizeof given; i++) expect(((unsigned char *)&given)[i] == 0xa5, "written on refusal");
@@ -86,13 +87,13 @@ static void test_target_sizes(void)
         resize(&given, sizeof given, &whole, sizeof whole);
         given.tail[at] = 1;
         facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, &given.target, sizeof whole + TAIL, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "target") && plan.opaque[0] == 7,
+        expect(is_error(&error, FACET_ERROR_SIZE, "target", -1) && plan.opaque[0] == 7,
                "byte %zu is taken", at);
     }
     facet_plan plan;
     facet_error error;
     facet_plan_init_sized(&plan, sizeof plan, &m, sizeof m, NULL, sizeof whole, &error);
-    expect(error.code == FACET_ERROR_NULL && !strcmp(error.field, "target"), "NULL: status %d", (int)error.code);
+    expect(is_error(&error, FACET_ERROR_NULL, "target", -1), "NULL: status %d", (int)error.code);
 }
 
 static void test_batch_sizes(void)
@@ -119,14 +120,14 @@ static void test_batch_sizes(void)
         resize(&given, sizeof given, &other.batch, sizeof other.batch);
         given.tail[at] = 1;
         facet_shade_sized(&plan, &given.batch, sizeof other.batch + TAIL, sizeof(facet_light), &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "batch"), "byte %zu is taken", at);
+        expect(is_error(&error, FACET_ERROR_SIZE, "batch", -1), "byte %zu is taken", at);
     }
     const size_t light_sizes[] = { 0, 4, sizeof(facet_light) - sizeof(void *), sizeof(facet_light) + sizeof(void *),
                                    SIZE_MAX };
     for (size_t i = 0; i < sizeof light_sizes / sizeof light_sizes[0]; i++) {
         facet_error error;
         facet_shade_sized(&plan, &other.batch, sizeof other.batch, light_sizes[i], &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "lights"), "lights of %zu bytes: status %d",
+        expect(is_error(&error, FACET_ERROR_SIZE, "lights", -1), "lights of %zu bytes: status %d",
                light_sizes[i], (int)error.code);
     }
     free_batch(&b);
@@ -158,7 +159,7 @@ static void test_image_sizes(void)
         resize(&given, sizeof given, &whole, sizeof whole);
         given.tail[at] = 1;
         facet_encode_sized(&given.image, sizeof whole + TAIL, &error);
-        expect(error.code == FACET_ERROR_SIZE && !strcmp(error.field, "image"), "byte %zu is taken", at);
+        expect(is_error(&error, FACET_ERROR_SIZE, "image", -1), "byte %zu is taken", at);
     }
 }
 
