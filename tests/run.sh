@@ -31,7 +31,7 @@ bench() {
 sanitizers() {
     suite=sanitizers
     for sanitizer in address undefined; do
-        flags="-O1 -fsanitize=$sanitizer -fno-sanitize-recover=all -fno-omit-frame-pointer" arches='scalar sse41 avx2 avx512'
+        flags="-O1 -fsanitize=$sanitizer -fno-sanitize-recover=all -fno-omit-frame-pointer" arches='scalar avx2 avx512'
         [ $sanitizer = address ] || arches='scalar avx2'
         case $("$cc" -dumpmachine) in x86_64*) ;; *) arches= ;; esac
         check "$sanitizer: builds" make_in "$build/$sanitizer" CFLAGS="$flags" ${arches:+ARCHES="$arches"} \
