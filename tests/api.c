@@ -1,6 +1,7 @@
 /* The public functions beside shading itself: words, plans as bytes, descriptions, threads, passes of lights. */
 #include "api.h"
 
+#include "cases.h"
 #include "errors.h"
 #include "guarded.h"
 #include "harness.h"
@@ -72,6 +73,19 @@ static void test_build(void)
 }
 
 /* ---- Plans ------------------------------------------------------------------------------------------------------- */
+
+/* The rich material's numbers with a kernel's models. */
+static facet_material rich_material_of(const kernel_case *k)
+{
+    facet_material m = rich_material();
+    m.diffuse.model = k->material.diffuse.model;
+    m.diffuse.sigma = k->sigma_max / 2;
+    m.specular.model = k->material.specular.model;
+    m.specular.masking = k->material.specular.masking;
+    m.fresnel.model = k->material.fresnel.model;
+    m.coupled = k->material.coupled;
+    return m;
+}
 
 static void test_plan_bytes(void)
 {

@@ -2,19 +2,15 @@
 #ifndef API_H
 #define API_H
 
-#include "cases.h"
 #include "samples.h"
 
-/* All streams, and those that a material may promise. */
+/* What a material may promise. */
 enum {
-#define FACET_STREAM(id, ...) | FACET_STREAM_##id
-    ALL_STREAMS = 0
-#include "streams.def"
 #define OF_GEOMETRY(id)
 #define OF_MATERIAL(id) | FACET_STREAM_##id
 #define OF_SOURCE(id)   | FACET_STREAM_##id
 #define FACET_STREAM(id, field, components, owner, ...) OF_##owner(id)
-    , MATERIAL_STREAMS = 0
+    MATERIAL_STREAMS = 0
 #include "streams.def"
 };
 
@@ -22,7 +18,6 @@ static const facet_target strict_scalar = { .arch = FACET_ARCH_SCALAR, .tier = F
 
 /* Every number has a value that is neither its default nor at an end of its domain. */
 facet_material rich_material(void);
-facet_material rich_material_of(const kernel_case *);        /* with a kernel's models */
 facet_plan make_plan(const facet_material *, facet_target);      /* a refusal fails the test */
 
 /* Random samples with every stream; their radiance is 0. */

@@ -10,6 +10,12 @@
 
 enum { CANARY = 0xa5, COUNT = 5, LIGHTS = 6 };
 
+enum {
+#define FACET_STREAM(id, ...) | FACET_STREAM_##id
+    ALL_STREAMS = 0
+#include "streams.def"
+};
+
 static float stream[COUNT], radiance[3][COUNT];
 static size_t invalid;
 
@@ -65,8 +71,7 @@ static void refuses_batch(const char *change, const facet_plan *plan, const face
     memset(untouched, CANARY, sizeof untouched);
     invalid = 1234;
     const facet_status status = facet_shade(plan, b, &error);
-    expect(status == code && is_error(&error, code, field, index), "%s: status %d, %s[%d]", change, (int)status,
-           error.field ? error.field : "NULL", error.index);
+    expect_refused(change, status, &error, code, field, index);
     expect(facet_shade(plan, b, NULL) == code, "%s: another status without an error", change);
     expect(!memcmp(radiance, untouched, sizeof radiance) && invalid == 1234, "%s: something was written", change);
 }
@@ -74,8 +79,7 @@ static void refuses_batch(const char *change, const facet_plan *plan, const face
 static void accepts_batch(const char *change, const facet_plan *plan, const facet_batch *b)
 {
     facet_error error = { FACET_ERROR_NULL, "stale", 7 };
-    expect(facet_shade(plan, b, &error) == FACET_OK && is_no_error(&error),
-           "%s: status %d, %s[%d]", change, (int)error.code, error.field ? error.field : "NULL", error.index);
+    expect_accepted(change, facet_shade(plan, b, &error), &error);
 }
 
 #define CHANGED_BATCH(call)                                                                                           \

@@ -27,8 +27,7 @@ static void refuses_plan(const char *change, const facet_material *m, facet_targ
     memset(&plan, 0xa5, sizeof plan);
     untouched = plan;
     const facet_status status = facet_plan_init(&plan, m, target, &error);
-    expect(status == code && is_error(&error, code, field, index), "%s: status %d, %s[%d]", change, (int)status,
-           error.field ? error.field : "NULL", error.index);
+    expect_refused(change, status, &error, code, field, index);
     expect(facet_plan_init(&plan, m, target, NULL) == code, "%s: another status without an error", change);
     expect(!memcmp(&plan, &untouched, sizeof plan), "%s: the plan was written", change);
 }
@@ -37,9 +36,7 @@ static void accepts_plan(const char *change, const facet_material *m, facet_targ
 {
     facet_plan plan;
     facet_error error = { FACET_ERROR_NULL, "stale", 7 };
-    const facet_status status = facet_plan_init(&plan, m, target, &error);
-    expect(status == FACET_OK && is_no_error(&error),
-           "%s: status %d, %s[%d]", change, (int)error.code, error.field ? error.field : "NULL", error.index);
+    expect_accepted(change, facet_plan_init(&plan, m, target, &error), &error);
 }
 
 #define PLAN_REFUSES(change, code, field, index)                                                                      \

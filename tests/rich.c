@@ -19,18 +19,6 @@ facet_material rich_material(void)
     };
 }
 
-facet_material rich_material_of(const kernel_case *k)
-{
-    facet_material m = rich_material();
-    m.diffuse.model = k->material.diffuse.model;
-    m.diffuse.sigma = k->sigma_max / 2;
-    m.specular.model = k->material.specular.model;
-    m.specular.masking = k->material.specular.masking;
-    m.fresnel.model = k->material.fresnel.model;
-    m.coupled = k->material.coupled;
-    return m;
-}
-
 facet_plan make_plan(const facet_material *m, facet_target target)
 {
     facet_plan plan;
